@@ -1,0 +1,168 @@
+"""YAML and JSON text to a case and back, for text from anybody.
+
+The reader is PyYAML's safe one with YAML 1.2 numbers (`1e9` is a number, `1:30` is not), no repeated keys, bounded
+size, depth and node count; aliases count at their full expansion, so that a small text cannot become a large case.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+import yaml
+
+from ..outcome import CaseError, FieldError
+from .case import Case, parse_case
+
+MAX_BYTES = 1_000_000
+MAX_NODES = 200_000
+MAX_DEPTH = 30
+
+
+class _Loader(yaml.CSafeLoader if hasattr(yaml, "CSafeLoader") else yaml.SafeLoader):  # type: ignore[misc]
+    """Safe loader with YAML 1.2's core numbers and booleans."""
+
+
+_Loader.yaml_implicit_resolvers = {}
+_CORE: dict[str, re.Pattern[str]] = {}
+for _tag, _pattern, _first in (
+    ("tag:yaml.org,2002:bool", r"^(?:true|True|TRUE|false|False|FALSE)$", "tTfF"),
+    ("tag:yaml.org,2002:int", r"^[-+]?[0-9]+$", "-+0123456789"),
+    (
+        "tag:yaml.org,2002:float",
+        r"^(?:[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))$",
+        "-+0123456789.",
+    ),
+    ("tag:yaml.org,2002:null", r"^(?:~|null|Null|NULL|)$", ["~", "n", "N", ""]),
+    ("tag:yaml.org,2002:merge", r"^(?:<<)$", "<"),
+):
+    _CORE[_tag] = re.compile(_pattern)
+    _Loader.add_implicit_resolver(_tag, _CORE[_tag], list(_first))
+
+
+def _int(loader: Any, node: yaml.ScalarNode) -> int | float:
+    text = str(loader.construct_scalar(node))
+    return int(text) if len(text) < 20 else float(text)
+
+
+def _float(loader: Any, node: yaml.ScalarNode) -> float:
+    return float(str(loader.construct_scalar(node)).lower().replace(".inf", "inf").replace(".nan", "nan"))
+
+
+_Loader.add_constructor("tag:yaml.org,2002:int", _int)
+_Loader.add_constructor("tag:yaml.org,2002:float", _float)
+
+
+def load_case(text: str | bytes) -> Case:
+    """A checked case from YAML or JSON text (JSON is read as the YAML it is).
+
+    Raises CaseError; each error carries the line of its field in the text.
+    """
+    data, lines = read_text(text)
+    try:
+        return parse_case(data)
+    except CaseError as error:
+        raise CaseError([_with_line(item, lines) for item in error.errors]) from None
+
+
+def read_text(text: str | bytes) -> tuple[Any, dict[tuple[str | int, ...], int]]:
+    """Plain data and the line number of every path, from YAML or JSON text."""
+    if len(text) > MAX_BYTES:
+        raise CaseError([FieldError((), f"the text has {len(text)} bytes; allowed: at most {MAX_BYTES}")])
+    try:
+        text = text.decode("utf-8-sig") if isinstance(text, bytes) else text.encode().decode()
+    except UnicodeError as error:
+        at, reason = getattr(error, "start", 0), getattr(error, "reason", "")
+        raise CaseError([FieldError((), f"the text is not UTF-8: {reason} at byte {at}")]) from None
+    try:
+        root = _compose(text)
+        lines = _walk(root)
+        return _construct(root), lines
+    except yaml.YAMLError as error:
+        mark = error.problem_mark if isinstance(error, yaml.MarkedYAMLError) else None
+        problem = getattr(error, "problem", None) or str(error).splitlines()[0]
+        raise CaseError([FieldError((), f"not valid YAML: {problem}", line=mark.line + 1 if mark else None)]) from None
+    except RecursionError:
+        raise CaseError([FieldError((), f"nested too deeply; allowed: at most {MAX_DEPTH} levels")]) from None
+
+
+def _compose(text: str) -> yaml.Node:
+    depth = 0
+    for event in yaml.parse(text, Loader=_Loader):  # a cheap pass, so that deep nesting never recurses
+        depth += isinstance(event, yaml.CollectionStartEvent)
+        depth -= isinstance(event, yaml.CollectionEndEvent)
+        if depth > MAX_DEPTH:
+            line = event.start_mark.line + 1 if event.start_mark else None
+            raise CaseError([FieldError((), f"nested too deeply; allowed: at most {MAX_DEPTH} levels", line=line)])
+    root = yaml.compose(text, Loader=_Loader)
+    if not isinstance(root, yaml.MappingNode):
+        raise CaseError([FieldError((), "a case is a mapping of keys to values; this text holds none")])
+    return root
+
+
+def _construct(root: yaml.Node) -> Any:
+    loader = _Loader("")
+    try:
+        return loader.construct_document(root)
+    finally:
+        loader.dispose()
+
+
+def _walk(root: yaml.Node) -> dict[tuple[str | int, ...], int]:
+    """Line of every path; refuses repeated keys and expansion beyond MAX_NODES."""
+    lines: dict[tuple[str | int, ...], int] = {}
+    stack: list[tuple[tuple[str | int, ...], yaml.Node]] = [((), root)]
+    count = 0
+    while stack:
+        loc, node = stack.pop()
+        count += 1
+        if count > MAX_NODES or len(loc) > MAX_DEPTH:
+            raise CaseError(
+                [FieldError((), f"expands to more than {MAX_NODES} values or {MAX_DEPTH} levels (aliases?)")]
+            )
+        lines[loc] = node.start_mark.line + 1
+        _plain(loc, node)
+        if isinstance(node, yaml.MappingNode):
+            seen: set[str] = set()
+            for key, value in node.value:
+                _plain(loc, key, is_key=True)
+                name = str(key.value)
+                if name in seen:
+                    line = key.start_mark.line + 1
+                    raise CaseError([FieldError((*loc, name), "this key is given twice", line=line)])
+                seen.add(name)
+                stack.append(((*loc, name), value))
+        elif isinstance(node, yaml.SequenceNode):
+            stack.extend(((*loc, index), value) for index, value in enumerate(node.value))
+    return lines
+
+
+def _plain(loc: tuple[str | int, ...], node: yaml.Node, is_key: bool = False) -> None:
+    """Refuses tags beyond YAML's core, tags their text does not match, and keys that are not scalars."""
+    line = node.start_mark.line + 1
+    if is_key and not isinstance(node, yaml.ScalarNode):
+        raise CaseError([FieldError(loc, "a key must be a plain word, not a list or a mapping", line=line)])
+    if isinstance(node, yaml.ScalarNode):
+        pattern = _CORE.get(node.tag)
+        fits = node.tag == "tag:yaml.org,2002:str" or (pattern is not None and pattern.match(node.value) is not None)
+    else:
+        kind = "map" if isinstance(node, yaml.MappingNode) else "seq"
+        fits = node.tag == f"tag:yaml.org,2002:{kind}"
+    if not fits:
+        tag = node.tag.rsplit(":", 1)[-1][:40]
+        raise CaseError(
+            [FieldError(loc, f"not valid YAML: tag {tag!r} is not allowed, or not with this value", line=line)]
+        )
+
+
+def _with_line(error: FieldError, lines: dict[tuple[str | int, ...], int]) -> FieldError:
+    loc = error.loc
+    while loc and loc not in lines:
+        loc = loc[:-1]
+    return FieldError(error.loc, error.message, error.value, lines.get(loc))
+
+
+def to_yaml(case: Case) -> str:
+    """The case as YAML in SI, angles as `… rad`; reads back to an equal case."""
+    return yaml.safe_dump(json.loads(case.canonical()), sort_keys=False, allow_unicode=True)

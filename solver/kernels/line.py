@@ -1,0 +1,45 @@
+"""The arrays of one discretised line, as every kernel takes them.
+
+Nodes 0 … N from end a to end b, elements 0 … N-1; element j joins nodes j and j + 1. Half an element belongs to each of
+its nodes. A banded matrix over the 3 (N + 1) node coordinates is stored by rows: entry (i, j) at [i, HALF + j - i].
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+#: half-bandwidth: bending couples three nodes, so two nodes apart and three coordinates each
+HALF = 8
+WIDTH = 2 * HALF + 1
+
+Array = np.ndarray
+
+
+class LineArrays(NamedTuple):
+    """Constants of one line, SI. Names as in docs/theory.md."""
+
+    L: Array  # (N,) unstretched element length
+    EA: Array  # (N,)
+    kb: Array  # (N+1,) rotational stiffness at a node, zero at the ends
+    EI: Array  # (N,)
+    D: Array  # (N,) diameter
+    w_dry: Array  # (N,) dry weight of an element
+    b_wet: Array  # (N,) buoyancy of an element, fully wet
+    cdn: Array  # (N,) normal drag of half an element, ¼ρLDCn
+    cdt: Array  # (N,) tangential drag of half an element, ¼ρLDCt
+    mw: Array  # (N,) displaced mass of half an element, ⅛ρπD²L
+    can: Array  # (N,) normal added mass coefficient
+    cat: Array  # (N,) tangential added mass coefficient
+    node_mass: Array  # (N+1,) dry mass of a node: half elements and attachment
+    point_weight: Array  # (N+1,) dry weight of an attachment
+    point_lift: Array  # (N+1,) its buoyancy, fully wet
+    point_radius: Array  # (N+1,) of the sphere of its volume: it rises out of the water over twice that
+    point_drag: Array  # (N+1,) ½ρ CdA of an attachment
+    point_mw: Array  # (N+1,) displaced mass of an attachment
+    point_ca: Array  # (N+1,) its added mass coefficient
+    a1: Array  # (N+1,) seabed stiffness of a node
+    seabed: Array  # (3,) a2 = 1/transition, height of the bed, damping of a node in full contact
+    current_z: Array  # (C,) heights, rising
+    current_v: Array  # (C, 3) current velocity at those heights

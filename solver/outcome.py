@@ -1,0 +1,73 @@
+"""Each way to fail, as a sentence with a remedy.
+
+Every exception a caller may meet derives from `SlowdriftError`. `CaseError` and `DataError` mean the question is wrong
+(exit status 2, HTTP 422); `NotConverged` means the analysis could not answer it (exit status 3); `Cancelled` is raised
+by a caller's own progress callback and passes through untouched.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+
+class SlowdriftError(Exception):
+    """Base of every error this program raises on purpose."""
+
+
+@dataclass(frozen=True)
+class FieldError:
+    """One fault of a case, at one field.
+
+    loc : path of keys and indices from the top of the case, () for the case as a whole.
+    message : a sentence with the value and the allowed range in it.
+    value : the offending value, shortened, as text.
+    line : line number in the YAML text, from 1, when known.
+    """
+
+    loc: tuple[str | int, ...]
+    message: str
+    value: str = ""
+    line: int | None = None
+
+    @property
+    def field(self) -> str:
+        """Dotted path, e.g. ``lines.bow-port.segments.0.length``."""
+        return ".".join(str(part) for part in self.loc) or "(case)"
+
+    def as_dict(self) -> dict[str, Any]:
+        return {
+            "loc": list(self.loc),
+            "field": self.field,
+            "message": self.message,
+            "value": self.value,
+            "line": self.line,
+        }
+
+    def __str__(self) -> str:
+        where = f" (line {self.line})" if self.line else ""
+        return f"{self.field}{where}: {self.message}"
+
+
+class CaseError(SlowdriftError):
+    """The case is wrong; `errors` names each field."""
+
+    def __init__(self, errors: list[FieldError]):
+        self.errors = errors
+        super().__init__("; ".join(str(error) for error in errors))
+
+
+class DataError(SlowdriftError):
+    """A data file cannot be read or does not hold what it must."""
+
+
+class NotConverged(SlowdriftError):
+    """An iteration ended without an answer."""
+
+    def __init__(self, analysis: str, message: str, remedy: str):
+        self.analysis, self.message, self.remedy = analysis, message, remedy
+        super().__init__(f"{message} {remedy}".strip())
+
+
+class Cancelled(SlowdriftError):
+    """The caller asked the run to stop."""

@@ -1,0 +1,240 @@
+"""Reader of Capytaine's own NetCDF layout, with the mean drift force as one variable more.
+
+The file is in the time factor e^{-i omega t}; excitation is conjugated here, once, and nowhere else.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...case.quantities import DOF
+from ...outcome import DataError
+from .hydrodynamics import HydrodynamicData
+from .interpolate import TURN
+from .netcdf import Dataset, dof_order, numbers, open_netcdf, require, scalar, take, vector3
+
+Array = np.ndarray
+ASYMMETRY = 0.02  # of √(ii·jj): above it a radiation matrix that is not symmetric is worth a warning
+NEGATIVE = 0.01  # of its peak: below minus this, damping on the diagonal is worth a warning
+MAX_OMEGA, MAX_HEADINGS = 5000, 721
+VARIABLES = (  # all that is read of a file
+    "omega", "wave_direction", "radiating_dof", "influenced_dof", "complex", "added_mass", "radiation_damping",
+    "Froude_Krylov_force", "diffraction_force", "excitation_force", "mean_drift_force", "hydrostatic_stiffness",
+    "rotation_center", "center_of_mass", "center_of_buoyancy", "disp_volume", "disp_mass", "rho", "g", "water_depth",
+    "forward_speed",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Layout:
+    """Where things are in the file: the frequency axis, the order of frequencies, headings and DOFs."""
+
+    name: str
+    dim: str
+    omega: Array
+    order: Array  # rising, zero and infinity included
+    headings: Array
+    turn: Array
+    radiating: list[int]
+    influenced: list[int]
+
+    @property
+    def finite(self) -> Array:
+        return self.order[(self.omega[self.order] > 0) & np.isfinite(self.omega[self.order])]
+
+    def at(self, omega: float) -> int | None:
+        found = np.flatnonzero(self.omega == omega)
+        return int(found[0]) if found.size else None
+
+
+def read_capytaine(payload: bytes, name: str) -> HydrodynamicData:
+    """Hydrodynamic data from the bytes of a dataset written by capytaine.export_dataset. Raises DataError."""
+    dataset = open_netcdf(payload, name, VARIABLES)
+    layout = _layout(dataset, name)
+    speed = scalar(dataset, "forward_speed", name)
+    if speed:
+        raise DataError(f"{name}: forward_speed is {speed:g} m/s; compute the data at zero speed")
+    warnings: list[str] = []
+    added_mass, zero, infinite = _radiation(dataset, "added_mass", layout, warnings)
+    damping, _, _ = _radiation(dataset, "radiation_damping", layout, warnings)
+    _check_damping(damping, layout, warnings)
+    excitation, excitation_zero = _excitation(dataset, layout)
+    density, gravity, depth = _water(dataset, name, warnings)
+    rotation_centre = vector3(dataset, "rotation_center", name)
+    stiffness = take(dataset, "hydrostatic_stiffness", ("influenced_dof", "radiating_dof"), name)
+    if stiffness is not None:
+        stiffness = _finite(stiffness[np.ix_(layout.influenced, layout.radiating)], "hydrostatic_stiffness", name)
+    if rotation_centre is None:
+        warnings.append(
+            f"{name}: the file does not say its rotation_center; vessel.hydrodynamics.reference_point is taken instead"
+        )
+    return HydrodynamicData(
+        name=name,
+        content_hash=hashlib.sha256(payload).hexdigest(),
+        omega=layout.omega[layout.finite],
+        headings=layout.headings,
+        added_mass=added_mass,
+        damping=damping,
+        excitation=excitation,
+        added_mass_zero=zero,
+        added_mass_infinite=infinite,
+        excitation_zero=excitation_zero,
+        mean_drift=_mean_drift(dataset, layout),
+        hydrostatic_stiffness=stiffness,
+        displaced_volume=_volume(dataset, name, density),
+        centre_of_buoyancy=vector3(dataset, "center_of_buoyancy", name),
+        centre_of_mass=vector3(dataset, "center_of_mass", name),
+        reference_point=np.zeros(3) if rotation_centre is None else rotation_centre,
+        reference_known=rotation_centre is not None,
+        density=density,
+        gravity=gravity,
+        depth=depth,
+        warnings=tuple(warnings),
+    )
+
+
+def _layout(dataset: Dataset, name: str) -> _Layout:
+    for axis in ("omega", "wave_direction"):
+        if axis not in dataset or len(dataset[axis].dims) != 1:
+            raise DataError(
+                f"{name}: there is no axis {axis}; export radiation and diffraction results together with "
+                f"capytaine.export_dataset"
+            )
+    omega = numbers(dataset, "omega", name)
+    if np.any(np.isnan(omega)) or np.any(omega < 0) or np.unique(omega).size != omega.size:
+        raise DataError(f"{name}: omega must hold distinct frequencies from 0 up, in rad/s; check the test matrix")
+    headings, turn = _headings(dataset, name)
+    layout = _Layout(
+        name, dataset["omega"].dims[0], omega, np.argsort(omega), headings, turn,
+        dof_order(dataset, "radiating_dof", name), dof_order(dataset, "influenced_dof", name),
+    )  # fmt: skip
+    if layout.finite.size == 0:
+        raise DataError(f"{name}: omega holds no finite frequency above 0; compute the band of the waves")
+    if layout.finite.size > MAX_OMEGA:
+        raise DataError(f"{name}: omega holds {layout.finite.size} frequencies; allowed: at most {MAX_OMEGA}")
+    return layout
+
+
+def _headings(dataset: Dataset, name: str) -> tuple[Array, Array]:
+    """Headings in [0, 2π), rising, and their positions in the file."""
+    beta = numbers(dataset, "wave_direction", name)
+    if beta.size == 0 or beta.size > MAX_HEADINGS or not np.all(np.isfinite(beta)):
+        raise DataError(f"{name}: wave_direction holds {beta.size} values; expected 1 to {MAX_HEADINGS} finite ones")
+    if dataset["wave_direction"].units.lower().startswith("deg") or np.abs(beta).max() > TURN + 1e-6:
+        raise DataError(
+            f"{name}: wave_direction goes up to {np.abs(beta).max():.4g}, which looks like degrees; give radians"
+        )
+    angle = beta % TURN
+    angle = np.where(TURN - angle < 1e-9, 0.0, angle)
+    order = np.argsort(angle, kind="stable")
+    keep = order[np.concatenate([[True], np.diff(angle[order]) > 1e-9])]
+    return angle[keep], keep
+
+
+def _radiation(
+    dataset: Dataset, variable: str, layout: _Layout, warnings: list[str]
+) -> tuple[Array, Array | None, Array | None]:
+    """Finite frequencies (W, 6, 6), and the matrices at 0 and infinity when they are there; made symmetric."""
+    name = layout.name
+    values = require(
+        dataset, variable, (layout.dim, "influenced_dof", "radiating_dof"), name,
+        "solve the radiation problems of all six degrees of freedom",
+    )  # fmt: skip
+    values = values[:, layout.influenced][:, :, layout.radiating].real
+    finite = _finite(values[layout.finite], variable, name)
+    peak = np.sqrt(np.abs(np.diagonal(finite, axis1=1, axis2=2)).max(axis=0))
+    scale = np.maximum(np.outer(peak, peak), 1e-300)
+    gap = (np.abs(finite - finite.transpose(0, 2, 1)) / scale).max(axis=0)
+    if gap.max() > ASYMMETRY:
+        i, j = np.unravel_index(int(gap.argmax()), gap.shape)
+        warnings.append(
+            f"{name}: {variable} of {DOF[i]} and {DOF[j]} differs from its transpose by {100 * gap.max():.1f} % "
+            f"(threshold {100 * ASYMMETRY:.0f} %); the mean is taken; refine the mesh"
+        )
+    edges = []
+    for edge in (0.0, math.inf):
+        index = layout.at(edge)
+        there = index is not None and bool(np.all(np.isfinite(values[index])))
+        edges.append(_symmetric(values[index]) if there else None)
+    return _symmetric(finite), edges[0], edges[1]
+
+
+def _symmetric(matrix: Array) -> Array:
+    result: Array = 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
+    return result
+
+
+def _check_damping(damping: Array, layout: _Layout, warnings: list[str]) -> None:
+    diagonal = np.diagonal(damping, axis1=1, axis2=2)
+    share = diagonal.min(axis=0) / np.maximum(diagonal.max(axis=0), 1e-300)
+    for dof in np.flatnonzero(share < -NEGATIVE):
+        omega = layout.omega[layout.finite][diagonal[:, dof].argmin()]
+        warnings.append(
+            f"{layout.name}: radiation_damping of {DOF[dof]} is negative at {omega:.4g} rad/s, "
+            f"{-100 * share[dof]:.1f} % of its peak (threshold {100 * NEGATIVE:.0f} %): an irregular frequency; "
+            f"compute with a lid or a finer mesh"
+        )
+
+
+def _excitation(dataset: Dataset, layout: _Layout) -> tuple[Array, Array | None]:
+    """Complex (W, H, 6) in e^{+i omega t}, and the real limit (H, 6) at omega = 0 when the file has it."""
+    dims, name = (layout.dim, "wave_direction", "influenced_dof"), layout.name
+    parts = [take(dataset, variable, dims, name) for variable in ("Froude_Krylov_force", "diffraction_force")]
+    if parts[0] is not None and parts[1] is not None:
+        with np.errstate(invalid="ignore"):  # infinity less infinity: NaN, which is refused below
+            total, variable = parts[0] + parts[1], "Froude_Krylov_force + diffraction_force"
+    else:
+        variable = "excitation_force"
+        remedy = "give it, or both Froude_Krylov_force and diffraction_force"
+        total = require(dataset, variable, dims, name, remedy)
+    if not np.iscomplexobj(total):
+        raise DataError(f"{name}: {variable} has no imaginary part; export it with capytaine.export_dataset")
+    total = np.conj(total[:, layout.turn][:, :, layout.influenced])
+    zero = layout.at(0.0)
+    limit = None if zero is None or not np.all(np.isfinite(total[zero])) else total[zero].real
+    return _finite(total[layout.finite], variable, name), limit
+
+
+def _mean_drift(dataset: Dataset, layout: _Layout) -> Array | None:
+    dims = (layout.dim, "wave_direction", "influenced_dof")
+    values = take(dataset, "mean_drift_force", dims, layout.name)
+    if values is None:
+        return None
+    values = values[layout.finite][:, layout.turn][:, :, layout.influenced].real
+    return _finite(values, "mean_drift_force", layout.name)
+
+
+def _water(dataset: Dataset, name: str, warnings: list[str]) -> tuple[float, float, float]:
+    """Density, gravity and depth the data were computed with; a missing one is assumed, with a warning."""
+    found = []
+    for variable, assumed, unit in (("rho", 1025.0, "kg/m3"), ("g", 9.81, "m/s2"), ("water_depth", math.inf, "m")):
+        value = scalar(dataset, variable, name)
+        if value is None:
+            warnings.append(f"{name}: the file does not say {variable}; {assumed:g} {unit} is taken")
+            value = assumed
+        if value <= 0:
+            raise DataError(f"{name}: {variable} is {value:g} {unit}; allowed: above 0")
+        found.append(value)
+    return found[0], found[1], found[2]
+
+
+def _volume(dataset: Dataset, name: str, density: float) -> float | None:
+    volume = scalar(dataset, "disp_volume", name)
+    if volume is None:
+        mass = scalar(dataset, "disp_mass", name)
+        volume = None if mass is None else mass / density
+    return volume if volume is None or volume > 0 else None
+
+
+def _finite(values: Array, variable: str, name: str) -> Array:
+    bad = int(np.count_nonzero(~np.isfinite(values)))
+    if bad:
+        raise DataError(
+            f"{name}: {variable} holds {bad} values that are not finite (NaN) at finite frequencies; "
+            f"compute the missing problems before exporting"
+        )
+    return np.ascontiguousarray(values)

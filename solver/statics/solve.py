@@ -1,0 +1,151 @@
+"""Statics of a whole case: placed lines, trim, then equilibrium under steady loads (docs/theory.md, S10-S12)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..forces import axial
+from ..model.body import VesselBody
+from ..model.build import Model
+from ..model.line import LineModel, has_current
+from .newton import State, equilibrium
+from .pretension import place, still_water
+from .start import first_shape
+
+Array = np.ndarray
+DRIFT_ROUNDS = 60
+
+
+@dataclass(frozen=True)
+class StaticState:
+    """An equilibrium and what holds it.
+
+    lines : with anchors and lengths found; state : shapes [m], vessel position (6,) and end forces (6,) on the supports.
+    body : the vessel with its constant loads, None without one; drift : mean wave drift force (6,) [N, N m].
+    """
+
+    lines: tuple[LineModel, ...]
+    state: State
+    body: VesselBody | None
+    drift: Array
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def position(self) -> Array:
+        return self.state.position
+
+
+def design_state(model: Model) -> StaticState:
+    """Lines placed and solved with the vessel held in the design position, still water, and the trim load found (S10).
+
+    Raises CaseError when a wanted pretension cannot be had, NotConverged when an iteration fails.
+    """
+    spec = model.statics
+    lines = tuple(place(model.case, line, model.frame) for line in model.lines)
+    shapes, forces, iterations = [], [], 0
+    for line in lines:
+        shape = first_shape(line, _known(line, 0), _known(line, 1))
+        held = equilibrium(
+            [still_water(line)],
+            State([shape], np.zeros(6)),
+            [np.zeros_like(shape)],
+            None,
+            spec.tolerance,
+            spec.max_iterations,
+        )
+        shapes.append(held.shapes[0])
+        forces.append(held.end_forces[0])
+        iterations = max(iterations, held.iterations)
+    state = State(shapes, np.zeros(6), forces, iterations, 0.0, True)
+    body = model.vessel.body if model.vessel is not None else None
+    if body is not None and model.vessel is not None:
+        body = body.with_constant(model.vessel.steady_load + _trim(model, lines, forces, body))
+    return StaticState(lines, state, body, np.zeros(6))
+
+
+def _known(line: LineModel, which: int) -> Array:
+    point = (line.end_a, line.end_b)[which].point
+    assert point is not None, "an end left without a position"
+    return np.asarray(point, dtype=float)
+
+
+def _trim(model: Model, lines: Sequence[LineModel], forces: Sequence[Array], body: VesselBody) -> Array:
+    """`balanced`: the heave, roll and pitch load that holds the design position; `as_given`: buoyancy minus weight (S10)."""
+    assert model.vessel is not None
+    if not model.vessel.balanced:
+        return model.vessel.buoyancy_minus_weight
+    load = np.zeros(6)
+    for line, force in zip(lines, forces, strict=True):
+        for row, end in enumerate(line.ends):
+            if end.kind == "fairlead" and end.arm is not None:
+                at_end = force[3 * row : 3 * row + 3]
+                load -= line.multiplicity * body.arm_matrix(np.zeros(6), end.arm).T @ at_end
+    return np.array([0.0, 0.0, load[2], load[3], load[4], 0.0])
+
+
+def settle(model: Model, start: StaticState, extra: Sequence[Array] | None = None) -> StaticState:
+    """Equilibrium under current, constant loads, mean drift and `extra` nodal loads, from a starting state (S11).
+
+    extra : loads on the nodes of each line beyond its static forces (N+1, 3) [N]: mean drag less the current's own.
+
+    The mean drift depends on the yaw it causes; it is substituted until the yaw settles within 1e-7 rad.
+    """
+    spec = model.statics
+    loads = list(extra) if extra is not None else [np.zeros((line.nodes, 3)) for line in start.lines]
+    state, drift, iterations = start.state, start.drift, 0
+    for _ in range(DRIFT_ROUNDS):
+        yaw = float(state.position[5])
+        drift = model.mean_drift(yaw)
+        body = None if start.body is None else start.body.with_constant(start.body.constant + drift)
+        if body is None:
+            state = _lines_alone(start.lines, state, loads, spec.tolerance, spec.max_iterations)
+        else:
+            state = equilibrium(start.lines, state, loads, body, spec.tolerance, spec.max_iterations)
+        iterations += state.iterations
+        if abs(float(state.position[5]) - yaw) < 1e-7 or not np.any(drift):
+            break
+    else:
+        from ..outcome import NotConverged
+
+        raise NotConverged(
+            "statics", f"the yaw under mean drift still changes after {DRIFT_ROUNDS} rounds.",
+            "Check the yaw stiffness of the mooring, or set vessel.mean_drift to exclude.",
+        )  # fmt: skip
+    state.iterations = iterations
+    return replace(start, state=state, drift=drift, warnings=_warnings(start.lines, state))
+
+
+def _lines_alone(
+    lines: Sequence[LineModel], state: State, loads: Sequence[Array], tolerance: float, most: int
+) -> State:
+    solved = [
+        equilibrium([line], State([shape], np.zeros(6)), [load], None, tolerance, most)
+        for line, shape, load in zip(lines, state.shapes, loads, strict=True)
+    ]
+    return State(
+        [one.shapes[0] for one in solved], state.position, [one.end_forces[0] for one in solved],
+        max((one.iterations for one in solved), default=0), max((one.residual for one in solved), default=0.0), True,
+    )  # fmt: skip
+
+
+def _warnings(lines: Sequence[LineModel], state: State) -> tuple[str, ...]:
+    found = []
+    for line, shape in zip(lines, state.shapes, strict=True):
+        tension = axial.tension(line.arrays, shape)
+        slack = int(np.sum(tension < 0))
+        if slack:
+            found.append(
+                f"line {line.name!r}: {slack} of {tension.size} elements are slack in static equilibrium (lowest tension "
+                f"{tension.min() / 1e3:.3g} kN); a folded shape need not be the only one: check length and ends"
+            )
+        if np.any(shape[:, 2] > 0) and np.any(shape[:, 2] < 0) and has_current(line.arrays):
+            found.append(f"line {line.name!r} pierces the surface in a current; the dry part carries no drag")
+    return tuple(found)
+
+
+def solve_statics(model: Model) -> StaticState:
+    """Design position, then equilibrium. Raises as `design_state` and `settle`."""
+    return settle(model, design_state(model))

@@ -1,0 +1,1 @@
+"""Nonlinear time domain: ensembles of seeds marched in lockstep."""

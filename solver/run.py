@@ -1,0 +1,176 @@
+"""The doors of the solver: check, plan, run_chunk, merge; and run, the four in a row."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Any
+
+from .analyses import linear_analysis, modes_analysis, natural_modes, seeds_in_linear_system
+from .case import Case
+from .case.analysis import Analyses
+from .check import check
+from .model.build import Model, build
+from .model.line import harmonic_omega
+from .outcome import CaseError, FieldError, NotConverged
+from .plan import plan
+from .results.channels import make_channels, make_time_channels
+from .results.part import Chunk, OnProgress, Part, Progress, Result
+from .results.solved import Solved
+from .results.summary import make_summary, provenance
+from .results.time import KEY, merge_time, time_part, time_summary
+from .statics.solve import StaticState, solve_statics
+from .time_domain.ensemble import march_ensemble
+from .time_domain.sea import low_border
+from .vessel.data import DataSource
+from .warm import warm_up, warm_up_time_domain
+
+__all__ = [
+    "check", "merge", "natural_modes", "plan", "run", "run_chunk", "select", "warm_up", "warm_up_time_domain",
+]  # fmt: skip
+
+
+def select(case: Case, analyses: tuple[str, ...]) -> Case:
+    """The case with only some of its analyses; one it does not name gets its defaults. Raises CaseError on a wrong name."""
+    known = tuple(Analyses.model_fields)
+    wrong = [name for name in analyses if name not in known]
+    if wrong or not analyses:
+        said = f"no analysis {wrong[0]!r}" if wrong else "no analysis is named"
+        raise CaseError([FieldError(("analyses",), f"{said}; allowed: {', '.join(known)}")])
+    wanted = {
+        name: getattr(case.analyses, name) or Analyses.model_validate({name: {}}).__dict__[name] for name in analyses
+    }
+    return case.model_copy(update={"analyses": Analyses(**wanted)})
+
+
+def run(
+    case: Case, data: DataSource | None, on_progress: OnProgress | None = None, threads: int | None = None
+) -> Result:
+    """Check, plan and do everything here, time-domain seeds in `threads` (default: all cores). Raises as `check`."""
+    check(case, data)
+    chunks = plan(case)
+    workers = threads or os.cpu_count() or 1
+    total, parts, before = sum(chunk.weight for chunk in chunks), [], 0.0
+    grouped = _together(chunks)
+    for chunk in grouped:
+
+        def tell(progress: Progress, chunk: Chunk = chunk, before: float = before) -> None:
+            if on_progress is not None:
+                on_progress(Progress((before + progress.fraction * chunk.weight) / total, progress.message))
+
+        parts.append(run_chunk(case, data, chunk, None, tell, workers))
+        before += chunk.weight
+    return merge(case, parts)
+
+
+def _together(chunks: list[Chunk]) -> list[Chunk]:
+    """All time-domain chunks as one, for a single machine's threads."""
+    others = [chunk for chunk in chunks if chunk.kind != "time"]
+    seeds = [chunk.seeds for chunk in chunks if chunk.seeds is not None]
+    if not seeds:
+        return others
+    weight = sum(chunk.weight for chunk in chunks if chunk.kind == "time")
+    return [*others, Chunk("time", (seeds[0][0], seeds[-1][1]), weight)]
+
+
+def run_chunk(
+    case: Case,
+    data: DataSource | None,
+    chunk: Chunk,
+    checkpoint: bytes | None = None,
+    on_progress: OnProgress | None = None,
+    threads: int = 1,
+) -> Part:
+    """Do one chunk. An analysis that does not converge is in the part's `failures`; what it does not need goes on.
+
+    checkpoint : what a former attempt at this chunk offered through its progress.
+    Raises CaseError and DataError when the question is wrong; whatever `on_progress` raises passes through.
+    """
+    tell = on_progress or (lambda _progress: None)
+    tell(Progress(0.0, "loading compiled kernels (a first start compiles them, a minute or more)"))
+    compile_time = warm_up() + (warm_up_time_domain() if chunk.kind == "time" else 0.0)
+    asked = case.analyses.requested()
+    model = build(case, data)
+    tell(Progress(0.02, "statics"))
+    try:
+        static = solve_statics(model)
+    except NotConverged as failure:
+        summary: dict[str, Any] = {
+            "case": case.name, "analyses": list(asked), "warnings": list(model.warnings),
+            "failures": dict.fromkeys(asked, f"{failure}"), "compile_time": compile_time,
+        }  # fmt: skip
+        return Part(summary)
+    if chunk.kind == "time":
+        return _time_chunk(model, static, chunk, checkpoint, tell, threads, compile_time)
+    failures: dict[str, str] = {}
+    frequency = linear_analysis(model, static, asked, tell, failures)
+    modes = modes_analysis(model, static, frequency, asked, tell, failures)
+    tell(Progress(0.97, "collecting results"))
+    shown = frequency if "frequency_domain" in asked else None
+    solved = Solved(model, static if frequency is None else frequency.static, shown, modes, failures)
+    summary = make_summary(solved, asked, compile_time)
+    if shown is not None and case.analyses.time_domain is not None and model.vessel is not None and solved.is_random:
+        summary["frequency_domain"]["same_waves"] = {"vessel_std": seeds_in_linear_system(model, static, shown)}
+    part = Part(summary, tuple(make_channels(solved)))
+    tell(Progress(1.0, "done"))
+    return part
+
+
+def merge(case: Case, parts: list[Part]) -> Result:
+    """One result from the parts of all chunks, in any order."""
+    asked = list(case.analyses.requested())
+    summary: dict[str, Any] = {"case": case.name, "analyses": asked, "warnings": [], "failures": {}}
+    channels = [channel for part in parts for channel in part.channels]
+    for part in parts:
+        own = {
+            key: value
+            for key, value in part.summary.items()
+            if key not in (KEY, "warnings", "failures", "compile_time")
+        }
+        summary.update(own)
+        summary["warnings"] = list(dict.fromkeys([*summary["warnings"], *part.summary.get("warnings", [])]))
+        summary["failures"].update(part.summary.get("failures", {}))
+        summary["compile_time"] = summary.get("compile_time", 0.0) + part.summary.get("compile_time", 0.0)
+    time_result = merge_time(parts)
+    if "time_domain" in summary["failures"]:
+        time_result = None
+    if time_result is not None:
+        summary["time_domain"] = time_summary(time_result)
+        channels += make_time_channels(time_result, list(case.lines))
+    return Result(summary, tuple(channels))
+
+
+def _time_chunk(
+    model: Model,
+    static: StaticState,
+    chunk: Chunk,
+    checkpoint: bytes | None,
+    tell: OnProgress,
+    threads: int,
+    compile_time: float,
+) -> Part:
+    """March a chunk's seeds."""
+    spec = model.case.analyses.time_domain
+    assert spec is not None
+    assert chunk.seeds is not None
+    seeds = list(range(*chunk.seeds))
+    about = {
+        "warnings": [*model.warnings, *static.warnings],
+        "compile_time": compile_time,
+        "provenance": provenance(model),
+    }
+
+    def report(share: float, save: Callable[[], bytes]) -> None:
+        tell(Progress(0.05 + 0.93 * share, f"time domain, {len(seeds)} seeds, {100 * share:.0f} %", save))
+
+    try:
+        record, timing = march_ensemble(model, static, spec, seeds, threads, report, checkpoint)
+    except NotConverged as failure:
+        return Part({**about, "failures": {"time_domain": str(failure)}})
+    most = max(line.nodes for line in static.lines)
+    lines = [
+        {"name": line.name, "gap": most - line.nodes, "arc_length": line.element_arc.tolist()} for line in static.lines
+    ]
+    part = time_part(record, timing, lines, low_border(model), harmonic_omega(model.case))
+    tell(Progress(1.0, "done"))
+    return Part({**about, **part.summary}, (), part.arrays)

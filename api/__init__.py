@@ -1,0 +1,1 @@
+"""The REST service: thin routes over services; documented in docs/rest.md."""

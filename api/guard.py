@@ -1,0 +1,83 @@
+"""What every request passes before a route: the Host it names, the Origin it comes from; and headers on every answer.
+
+Without accounts, whatever a browser on this machine sends is obeyed; so a page from elsewhere must not be able to make
+it send anything (Origin), nor reach us under a name of its own (Host, "DNS rebinding").
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from urllib.parse import urlsplit
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.responses import Response
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+SAFE = ("GET", "HEAD", "OPTIONS")
+HEADERS = {
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "same-origin",
+    "X-Frame-Options": "SAMEORIGIN",
+}
+PROBLEM = "application/problem+json"
+
+
+def _content(status: int, kind: str, title: str) -> bytes:
+    return json.dumps({"type": kind, "title": title, "status": status, "detail": title}).encode()
+
+
+TOO_LARGE = _content(413, "too-large", "The body is larger than this route takes.")
+
+
+class Guard:
+    def __init__(self, app: ASGIApp, allowed_hosts: Sequence[str]):
+        self.app, self.allowed = app, set(allowed_hosts)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            return await self.app(scope, receive, send)
+        refusal = self._refusal(scope["method"], Headers(scope=scope)) or _null_byte(scope)
+        state: dict[str, bool] = {}
+
+        async def send_with_headers(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                headers = MutableHeaders(scope=message)
+                for name, value in HEADERS.items():
+                    headers.setdefault(name, value)
+                if message["status"] == 413 and headers.get("content-type") != PROBLEM:
+                    headers["content-type"] = PROBLEM  # the framework's own is bare text
+                    headers["content-length"] = str(len(TOO_LARGE))
+                    state["replace"] = True
+            elif state.get("replace"):
+                message = {"type": "http.response.body", "body": TOO_LARGE if state.pop("replace") else b""}
+            await send(message)
+
+        return await (refusal or self.app)(scope, receive, send_with_headers)
+
+    def _refusal(self, method: str, headers: Headers) -> Response | None:
+        host = headers.get("host", "")
+        if "*" not in self.allowed and _name(host) not in self.allowed:
+            return _problem(400, "host-unknown", "This server does not answer to that name.")
+        origin = headers.get("origin")
+        if method not in SAFE and origin is not None and urlsplit(origin).netloc != host:
+            return _problem(403, "origin-foreign", "Pages of another origin may not change anything here.")
+        return None
+
+
+def _null_byte(scope: Scope) -> Response | None:
+    """No id or name of ours holds one, and a database may choke on it."""
+    if "\0" in scope["path"] or b"%00" in scope["query_string"]:
+        return _problem(400, "request-invalid", "The address holds a null byte.")
+    return None
+
+
+def _name(host: str) -> str:
+    try:
+        return urlsplit(f"//{host}").hostname or ""
+    except ValueError:
+        return ""
+
+
+def _problem(status: int, kind: str, title: str) -> Response:
+    return Response(_content(status, kind, title), status, media_type=PROBLEM)

@@ -1,0 +1,67 @@
+"""The FastAPI app."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+from fastapi import APIRouter, FastAPI
+from starlette.middleware.gzip import GZipMiddleware
+from starlette.types import ASGIApp
+
+from store.database import Database
+from store.doorbell import Doorbell
+from store.reconcile import Reconciler
+from store.settings import Settings
+
+from . import errors
+from .context import Context
+from .guard import Guard
+from .routes import cases, catalogue, data_sets, events, health, runs
+from .routes.common import problems
+
+BASE = "/api/v1"
+
+
+class Guarded(FastAPI):
+    """FastAPI with the guard around everything, its own error pages and limits included."""
+
+    def build_middleware_stack(self) -> ASGIApp:
+        context: Context = self.state.context
+        return Guard(super().build_middleware_stack(), context.settings.hosts)
+
+
+def create_app(settings: Settings | None = None, reconcile: bool = True) -> FastAPI:
+    settings = settings or Settings.from_env()
+    context = Context(settings, Database(settings.database), Doorbell(settings))
+
+    @asynccontextmanager
+    async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        reconciler = Reconciler(context.database, context.doorbell, settings) if reconcile else None
+        if reconciler:
+            reconciler.start()
+        yield
+        if reconciler:
+            reconciler.stop()
+        context.doorbell.close()
+        context.database.close()
+
+    app = Guarded(
+        title="Slowdrift",
+        summary="Frequency- and time-domain analysis of moored floating vessels",
+        version="1",
+        openapi_url=f"{BASE}/openapi.json",
+        docs_url=None,  # its page loads scripts from elsewhere
+        redoc_url=None,
+        max_body_size=settings.max_request_bytes,
+        lifespan=lifespan,
+    )
+    app.state.context = context
+    errors.install(app)
+    app.add_middleware(GZipMiddleware, minimum_size=2000, compresslevel=5)
+    app.include_router(health.router)
+    base = APIRouter(prefix=BASE, responses=problems(400, 413, 422))
+    for module in (catalogue, cases, data_sets, events, runs):
+        base.include_router(module.router)
+    app.include_router(base)
+    return app

@@ -1,0 +1,1 @@
+"""Thin routes: parameters in, a service's answer out."""

@@ -1,0 +1,116 @@
+"""Runs: started, listed, cancelled, deleted, and their results."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import IO, Annotated, Any, Literal
+
+from fastapi import APIRouter, Query, Response
+from fastapi.responses import StreamingResponse
+
+from store.repositories import ChannelRepository, RunRepository
+
+from ..bodies import RunRequestDep
+from ..context import ContextDep, ScopeDep
+from ..schemas import ChannelPage, ChannelValues, RunInfo, RunPage, RunRequest
+from ..services import channels, export
+from ..services import runs as service
+from .common import CASE_BYTES, Cursor, Key, Limit, problems
+
+router = APIRouter(prefix="/runs", tags=["runs"])
+State = Literal["queued", "running", "cancelling", "succeeded", "failed", "cancelled"]
+_REQUEST = {
+    "requestBody": {
+        "required": True,
+        "content": {"application/json": {"schema": RunRequest.model_json_schema()}},
+    }
+}
+
+
+@router.post("", status_code=202, responses=problems(404, 422), openapi_extra=_REQUEST, max_body_size=CASE_BYTES)
+def start_run(context: ContextDep, scope: ScopeDep, request: RunRequestDep) -> RunInfo:
+    """Queue a run of a saved case, or of one given here (which is saved first)."""
+    return service.start(context, scope, request)
+
+
+@router.get("")
+def list_runs(
+    context: ContextDep, scope: ScopeDep, limit: Limit = 50, cursor: Cursor = None, state: State | None = None
+) -> RunPage:
+    """Newest first."""
+    with context.database.read() as session:
+        views, total = RunRepository(session, scope).page(limit, cursor, state)
+    items = [service.info(view) for view in views]
+    return RunPage(items=items, next_cursor=items[-1].id if len(items) == limit else None, total=total)
+
+
+@router.get("/{run_id}", responses=problems(404))
+def get_run(context: ContextDep, scope: ScopeDep, run_id: Key) -> RunInfo:
+    return service.show(context, scope, run_id)
+
+
+@router.post("/{run_id}/cancel", status_code=202, responses=problems(404, 409))
+def cancel_run(context: ContextDep, scope: ScopeDep, run_id: Key) -> RunInfo:
+    """A queued run ends at once; a running one within about two seconds."""
+    return service.cancel(context, scope, run_id)
+
+
+@router.delete("/{run_id}", status_code=204, responses=problems(404, 409))
+def delete_run(context: ContextDep, scope: ScopeDep, run_id: Key) -> None:
+    with context.change() as unit:
+        RunRepository(unit.session, scope).delete(run_id)
+
+
+@router.get("/{run_id}/summary", responses=problems(404, 409))
+def get_summary(context: ContextDep, scope: ScopeDep, run_id: Key) -> dict[str, Any]:
+    """docs/summary.md describes it. A failed run has one too when some of its analyses gave results."""
+    with context.database.read() as session:
+        text = RunRepository(session, scope).summary(run_id)
+    return Response(text, media_type="application/json")  # type: ignore[return-value]  # it is JSON already
+
+
+@router.get("/{run_id}/channels", responses=problems(404))
+def list_channels(context: ContextDep, scope: ScopeDep, run_id: Key) -> ChannelPage:
+    with context.database.read() as session:
+        run = RunRepository(session, scope).get(run_id)
+        found = ChannelRepository(session).names(run.id)
+    return ChannelPage.model_validate({"items": [channels.listing(info) for info in found]})
+
+
+@router.get("/{run_id}/channels/{name:path}", responses={200: {"model": ChannelValues}, **problems(404, 422)})
+def get_channel(
+    context: ContextDep,
+    scope: ScopeDep,
+    run_id: Key,
+    name: str,
+    start: Annotated[float | None, Query(alias="from", description="on the first axis", allow_inf_nan=False)] = None,
+    stop: Annotated[float | None, Query(alias="to", description="on the first axis", allow_inf_nan=False)] = None,
+    points: Annotated[int | None, Query(ge=4, le=1_000_000, description="at most so many on the first axis")] = None,
+    seed: int | None = None,
+    arc_length: Annotated[float | None, Query(description="the nearest node [m]", allow_inf_nan=False)] = None,
+) -> Response:
+    """Values, sliced and decimated here (M4: no peak is lost)."""
+    with context.database.read() as session:
+        run = RunRepository(session, scope).get(run_id)
+        channel = ChannelRepository(session).get(run.id, name)
+    shown = channels.look(channel, channels.View(start, stop, points, seed, arc_length))
+    return Response(json.dumps(shown, allow_nan=False, separators=(",", ":")), media_type="application/json")
+
+
+@router.get(
+    "/{run_id}/export",
+    responses={200: {"content": {"application/zip": {}}}, **problems(404, 409)},
+    response_class=StreamingResponse,
+)
+def export_run(context: ContextDep, scope: ScopeDep, run_id: Key) -> StreamingResponse:
+    """run.json, summary.json, case.yaml and channels.npz in one ZIP."""
+    archive = export.archive(context, scope, run_id)
+    headers = {"Content-Disposition": f'attachment; filename="slowdrift-{run_id[:32]}.zip"'}
+    return StreamingResponse(_pieces(archive), media_type="application/zip", headers=headers)
+
+
+def _pieces(file: IO[bytes]) -> Iterator[bytes]:
+    with file:
+        while piece := file.read(256 * 1024):
+            yield piece

@@ -1,0 +1,164 @@
+"""What REST answers with, as models: the OpenAPI description is made from them."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+ID = "0197c1f2a3b47c8d9e0f1a2b3c4d5e6f"
+HASH = "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08"
+TIME = "2026-01-31T12:00:00Z"
+
+
+class CaseInfo(BaseModel):
+    """A saved case: one version under its name, never changed."""
+
+    id: str = Field(examples=[ID])
+    name: str = Field(examples=["FPSO 2000 m"])
+    version: int = Field(examples=[1])
+    content_hash: str = Field(examples=[HASH], description="SHA-256 of the canonical JSON")
+    created_at: datetime = Field(examples=[TIME])
+    warnings: list[str] = Field(default=[], examples=[[]])
+
+
+class CaseDetail(CaseInfo):
+    case: dict[str, Any]
+    yaml: str
+
+
+class CasePage(BaseModel):
+    items: list[CaseInfo]
+    next_cursor: str | None
+
+
+class CaseCheck(BaseModel):
+    ok: bool = True
+    name: str
+    analyses: list[str]
+    warnings: list[str]
+
+
+class DataSetInfo(BaseModel):
+    """Hydrodynamic data; cases refer to it by id, content hash or name (then the newest version)."""
+
+    id: str = Field(examples=[ID])
+    name: str = Field(examples=["barge-240x46x10.nc"])
+    version: int = Field(examples=[1])
+    filename: str = Field(examples=["barge-240x46x10.nc"])
+    content_hash: str = Field(examples=[HASH], description="SHA-256 of the file")
+    size: int = Field(examples=[123456], description="bytes")
+    summary: dict[str, Any]
+    created_at: datetime = Field(examples=[TIME])
+
+
+class DataSetPage(BaseModel):
+    items: list[DataSetInfo]
+    next_cursor: str | None
+
+
+class RunRequest(BaseModel):
+    """Exactly one of `case_id`, `case`, `yaml`."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={"examples": [{"case_id": ID, "analyses": ["statics", "frequency_domain"]}]},
+    )
+    case_id: str | None = Field(None, pattern=r"^[0-9A-Za-z-]{1,64}$")
+    case: dict[str, Any] | None = None
+    yaml: str | None = None
+    analyses: list[str] | None = Field(None, max_length=10, description="a choice of the case's; all when left out")
+
+
+class RunInfo(BaseModel):
+    id: str = Field(examples=[ID])
+    case_id: str = Field(examples=[ID])
+    case_name: str = Field(examples=["FPSO 2000 m"])
+    content_hash: str = Field(examples=[HASH])
+    analyses: list[str] = Field(examples=[["statics", "frequency_domain", "modes"]])
+    state: str = Field(examples=["running"], description="queued, running, cancelling, succeeded, failed or cancelled")
+    outcomes: dict[str, str] = Field(
+        examples=[{"statics": "succeeded"}],
+        description="per analysis: pending, succeeded, failed, skipped or cancelled",
+    )
+    reason: str | None = Field(description="why it failed")
+    progress: float = Field(examples=[0.4], ge=0, le=1)
+    message: str = Field(examples=["frequency domain, iteration 3"])
+    created_at: datetime = Field(examples=[TIME])
+    started_at: datetime | None
+    finished_at: datetime | None
+    attempt: int = Field(examples=[1])
+    solver_version: str | None
+    data_set_id: str | None
+    warnings: list[str]
+
+
+class RunPage(BaseModel):
+    items: list[RunInfo]
+    next_cursor: str | None
+    total: int
+
+
+class AxisInfo(BaseModel):
+    name: str = Field(examples=["omega"])
+    unit: str = Field(examples=["rad/s"])
+    size: int
+    first: float | None
+    last: float | None
+
+
+class ChannelListing(BaseModel):
+    name: str = Field(examples=["frequency/vessel/surge"])
+    dims: list[str] = Field(examples=[["omega"]])
+    shape: list[int] = Field(examples=[[360]])
+    unit: str = Field(examples=["m2 s/rad"])
+    axes: list[AxisInfo]
+    description: str
+    band: str = Field(examples=["total"])
+
+
+class ChannelPage(BaseModel):
+    items: list[ChannelListing]
+
+
+class AxisValues(BaseModel):
+    name: str
+    unit: str
+    values: list[float]
+
+
+class ChannelValues(BaseModel):
+    name: str
+    unit: str
+    description: str
+    band: str
+    axes: list[AxisValues]
+    values: list[Any] = Field(description="nested lists, one level per axis; a bare number when no axis is left")
+    decimation: str | None = Field(description="m4 or stride, when `points` made the first axis shorter")
+    full_size: int | None = Field(description="length of the first axis before decimation")
+
+
+class Example(BaseModel):
+    name: str = Field(examples=["fpso-2000m"])
+    title: str
+    description: str
+    yaml: str
+
+
+class FieldFault(BaseModel):
+    loc: list[str | int]
+    field: str = Field(examples=["lines.bow-port.segments.0.length"])
+    message: str
+    value: str
+    line: int | None
+
+
+class ProblemInfo(BaseModel):
+    """RFC 9457, as application/problem+json."""
+
+    type: str
+    title: str
+    status: int
+    detail: str | None = None
+    errors: list[FieldFault] | None = None

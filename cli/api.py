@@ -1,0 +1,39 @@
+"""The API process, started by the supervisor with a socket that is bound already."""
+
+from __future__ import annotations
+
+import argparse
+
+from .lifeline import hold_on
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    parser = commands.add_parser("api")
+    parser.add_argument("--fd", type=int, required=True)
+    parser.add_argument("--port", type=int, required=True)
+    parser.add_argument("--no-pages", action="store_true")
+    parser.set_defaults(func=run_api)
+
+
+def run_api(options: argparse.Namespace) -> int:
+    import socket
+
+    import uvicorn
+
+    from store.settings import Settings
+
+    from .serve import compose_app
+
+    hold_on()
+    settings = Settings.from_env()
+    app = compose_app(settings, options.port, pages=not options.no_pages)
+    config = uvicorn.Config(
+        app,
+        log_level=settings.log_level.lower(),
+        access_log=False,
+        server_header=False,
+        timeout_graceful_shutdown=2,
+        timeout_keep_alive=30,
+    )
+    uvicorn.Server(config).run(sockets=[socket.socket(fileno=options.fd)])
+    return 0

@@ -1,0 +1,39 @@
+"""`slowdrift COMMAND`: each command's module is imported only when it is called, so that `run` needs no web server."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import sys
+from collections.abc import Sequence
+
+COMMANDS = {
+    "run": ("cli.run", "run a case here, without a server"),
+    "serve": ("cli.serve", "start the service: REST, pages and workers together"),
+    "worker": ("cli.worker", "start one worker, for a service on several processes or machines"),
+    "demo": ("cli.demo", "start the service, run the FPSO example and show its results"),
+    "migrate": ("cli.migrate", "bring the database to this version's schema"),
+}
+HIDDEN = {"api": "cli.api"}
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    asked = arguments[0] if arguments else ""
+    parser = argparse.ArgumentParser(
+        prog="slowdrift", description="Frequency- and time-domain analysis of moored floating vessels."
+    )
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    for name, (module, text) in COMMANDS.items():
+        if name == asked:
+            importlib.import_module(module).add_parser(commands)
+        else:
+            commands.add_parser(name, help=text)
+    if asked in HIDDEN:
+        importlib.import_module(HIDDEN[asked]).add_parser(commands)
+    chosen = parser.parse_args(arguments)
+    return int(chosen.func(chosen) or 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,134 @@
+"""`slowdrift serve`: database, API with pages, workers, under one supervisor. The only place that composes them."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from dataclasses import dataclass
+from typing import Any
+
+from store.settings import Settings
+
+from .options import RefusedError, add_data_dir, bind, is_loopback, read_settings, refuse, say
+from .supervisor import Child, Supervisor
+
+NO_LOGIN = (
+    "{host} can be reached from other machines, and there are no accounts yet: whoever reaches it could read and "
+    "delete everything. Bind to 127.0.0.1, or say --allow-no-login where a network or proxy of yours keeps others out."
+)
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    parser = commands.add_parser("serve", help="start the service")
+    add_options(parser)
+    parser.set_defaults(func=serve)
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--host", default="127.0.0.1", help="address to bind to (default: %(default)s)")
+    parser.add_argument("--port", type=int, default=8000, help="0 takes any free one (default: %(default)s)")
+    add_data_dir(parser)
+    parser.add_argument("--workers", type=int, default=1, metavar="N", help="runs at a time; 0: API only (default: 1)")
+    parser.add_argument("--no-pages", action="store_true", help="REST only")
+    parser.add_argument("--allow-no-login", action="store_true", help="serve other machines though nobody signs in")
+    parser.add_argument("--log", choices=("files", "here"), default="files", help="logs into the data folder, or here")
+
+
+@dataclass
+class Service:
+    """A started service, to be ticked and stopped by its owner."""
+
+    url: str
+    settings: Settings
+    supervisor: Supervisor
+
+
+def prepare(options: argparse.Namespace) -> Service:
+    """Migrate, register the bundled data, bind, start the children. Raises RefusedError."""
+    if not is_loopback(options.host) and not options.allow_no_login:
+        raise RefusedError(NO_LOGIN.format(host=options.host))
+    anyone = (
+        {}
+        if is_loopback(options.host)
+        else {"SLOWDRIFT_ALLOWED_HOSTS": os.environ.get("SLOWDRIFT_ALLOWED_HOSTS") or "*"}
+    )
+    settings = read_settings(options.data_dir, anyone)
+    listener = bind(options.host, options.port)
+
+    from store.bundled import register_bundled
+    from store.database import Database
+    from store.migrations import upgrade
+
+    database = Database(settings.database)
+    try:
+        upgrade(database)
+        register_bundled(database)
+    except Exception as error:
+        raise RefusedError(f"the database cannot be prepared: {type(error).__name__}: {error}") from None
+    finally:
+        database.close()
+    port = listener.getsockname()[1]
+    supervisor = Supervisor(
+        _children(options, listener.fileno(), port),
+        settings.as_env(),
+        settings.data_dir / "logs" if options.log == "files" else None,
+    )
+    supervisor.start()
+    listener.detach()  # stays open here, so that connections wait while the API restarts
+    shown = "127.0.0.1" if options.host in ("0.0.0.0", "::") else options.host
+    return Service(f"http://{f'[{shown}]' if ':' in shown else shown}:{port}", settings, supervisor)
+
+
+def _children(options: argparse.Namespace, descriptor: int, port: int) -> list[Child]:
+    api = ["api", "--fd", str(descriptor), "--port", str(port)] + (["--no-pages"] if options.no_pages else [])
+    children = [Child("api", api, (descriptor,))]
+    if options.workers > 0:
+        children.append(Child("worker", ["worker", "--concurrency", str(options.workers)]))
+        children.append(Child("interactive", ["worker", "--queue", "interactive"]))
+    return children
+
+
+def serve(options: argparse.Namespace) -> int:
+    try:
+        service = prepare(options)
+    except RefusedError as error:
+        return refuse(error)
+    say(f"Slowdrift is at {service.url}/  (Ctrl-C ends it)")
+    if is_loopback(options.host):
+        say("No login: only this machine can reach it.")
+    if options.log == "files":
+        say(f"Data and logs: {service.settings.data_dir}")
+    try:
+        service.supervisor.run()
+    finally:
+        service.supervisor.stop()
+    return 0
+
+
+def compose_app(settings: Settings, port: int, pages: bool = True):  # type: ignore[no-untyped-def]
+    """The API app with the pages mounted at /app, which talk to it over loopback like any other client."""
+    from starlette.responses import RedirectResponse
+
+    from api.main import create_app
+
+    app = create_app(settings)
+    if not pages:
+        return app
+    try:
+        from a2wsgi import WSGIMiddleware
+
+        from frontend.app import create_app as create_pages
+    except ImportError as error:
+        say(f"The pages are not installed ({error}); REST only.")
+        return app
+    server = create_pages(f"http://127.0.0.1:{port}")
+
+    def without_origin(environ: Any, start_response: Any) -> Any:
+        environ.pop(
+            "HTTP_ORIGIN", None
+        )  # checked by api/guard.py under the name the browser used; pages call by another
+        return server(environ, start_response)
+
+    app.mount("/app", WSGIMiddleware(without_origin, workers=10))  # type: ignore[arg-type]
+    app.add_api_route("/", lambda: RedirectResponse("/app/"), include_in_schema=False)
+    return app

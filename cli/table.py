@@ -1,0 +1,117 @@
+"""Tables of a summary for a terminal: kN, m, degrees."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+DOF = ("surge", "sway", "heave", "roll", "pitch", "yaw")
+
+
+def show(summary: dict[str, Any], console: Console | None = None) -> None:
+    """Print what a summary holds, one table an analysis, and its warnings."""
+    console = console or Console()
+    console.print(f"[bold]{summary['case']}[/bold]")
+    for name, make in (
+        ("statics", _statics),
+        ("modes", _modes),
+        ("frequency_domain", _frequency),
+        ("time_domain", _time),
+    ):
+        if name in summary:
+            for table in make(summary[name]):
+                console.print(table)
+    for warning in summary.get("warnings", []):
+        console.print(f"[yellow]warning:[/yellow] {warning}", highlight=False)
+
+
+def _table(title: str, *columns: str) -> Table:
+    table = Table(title=title, title_justify="left", title_style="bold")
+    for index, column in enumerate(columns):
+        table.add_column(column, justify="left" if index == 0 else "right")
+    return table
+
+
+def _statics(statics: dict[str, Any]) -> list[Table]:
+    table = _table(
+        "Statics", "line, end", "tension kN", "force x kN", "force y kN", "force z kN", "length m", "on the bed m"
+    )
+    for name, line in statics["lines"].items():
+        for end in ("end_a", "end_b"):
+            forces = [f"{value / 1e3:.2f}" for value in line[end]["force"]]
+            first = end == "end_a"
+            table.add_row(
+                f"{name}, {end[-1]}", f"{line[end]['tension'] / 1e3:.2f}", *forces,
+                f"{line['length']:.2f}" if first else "", f"{line['grounded_length']:.1f}" if first else "",
+            )  # fmt: skip
+    tables = [table]
+    if "vessel" in statics:
+        offset = _table("Static position", *("from the design position", *DOF))
+        offset.add_row(
+            "m, deg", *(_motion(dof, value) for dof, value in zip(DOF, statics["vessel"]["position"], strict=True))
+        )
+        tables.append(offset)
+    return tables
+
+
+def _motion(dof: str, value: float) -> str:
+    return f"{math.degrees(value):.3f}" if dof in DOF[3:] else f"{value:.3f}"
+
+
+def _modes(modes: list[dict[str, Any]]) -> list[Table]:
+    table = _table("Modes", "mode", "period s", "damping by vessel %", "damping by lines %", "mass of lines %")
+    for mode in modes:
+        shares = (100 * mode[key] for key in ("damping_vessel", "damping_lines", "mass_lines"))
+        table.add_row(mode["label"], f"{mode['period']:.1f}", *(f"{share:.2f}" for share in shares))
+    return [table]
+
+
+def _frequency(result: dict[str, Any]) -> list[Table]:
+    tables = []
+    if "vessel_std" in result:
+        table = _table("Motion, standard deviation (m, deg)", "band", *DOF)
+        for band, label in (("wf", "wave frequency"), ("lf", "low frequency")):
+            table.add_row(label, *(_motion(dof, result["vessel_std"][band][dof]) for dof in DOF))
+        tables.append(table)
+    if any("tension_std" in line for line in result["lines"].values()):
+        table = _table(
+            "Tension, standard deviation (kN)", "line", "WF end a", "WF end b", "LF end a", "LF end b", "maximum 3 h"
+        )
+        for name, line in result["lines"].items():
+            wf, lf = line["tension_std"]["wf"], line["tension_std"]["lf"]
+            values = (wf[0], wf[-1], lf[0], lf[-1], max(line["tension_most_probable_max"]))
+            table.add_row(name, *(f"{value / 1e3:.1f}" for value in values))
+    else:
+        table = _table("Tension, amplitude (kN)", "line", "end a", "end b", "largest", "mean")
+        for name, line in result["lines"].items():
+            values = line["tension_amplitude"]
+            shown = (values[0], values[-1], max(values), sum(values) / len(values))
+            table.add_row(name, *(f"{value / 1e3:.2f}" for value in shown))
+    return [*tables, table]
+
+
+def _time(result: dict[str, Any]) -> list[Table]:
+    tables = []
+    count = result["realisations"]
+    if "vessel_std" in result:
+        table = _table(f"Time domain, motion, standard deviation ± error of {count} seeds (m, deg)", "band", *DOF)
+        for band, label in (("wf", "wave frequency"), ("lf", "low frequency")):
+            std, error = result["vessel_std"][band], result["vessel_std_error"][band]
+            table.add_row(label, *(f"{_motion(dof, std[dof])} ± {_motion(dof, error[dof])}" for dof in DOF))
+        tables.append(table)
+    table = _table(
+        "Time domain, tension (kN)",
+        "line",
+        "WF σ end a",
+        "WF σ end b",
+        "LF σ end b",
+        "least at end b",
+        "largest at end b",
+    )
+    for name, line in result["lines"].items():
+        wf, lf, end = line["tension_std"]["wf"], line["tension_std"]["lf"], line["end_b_tension"]
+        table.add_row(name, *(f"{value / 1e3:.1f}" for value in (wf[0], wf[-1], lf[-1], end["min"], end["max"])))
+    return [*tables, table]

@@ -1,0 +1,1 @@
+"""The database: models, migrations, repositories, array blobs. Shared by the API and the workers."""

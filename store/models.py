@@ -1,0 +1,201 @@
+"""Tables. Every row of a user's belongs to a project, every project to a team; both have a default each."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import JSON, DateTime, Float, ForeignKey, Index, LargeBinary, MetaData, String, Text, UniqueConstraint
+from sqlalchemy.engine import Dialect
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+from sqlalchemy.types import TypeDecorator
+
+from .clock import utc_now
+from .ids import new_id
+
+DEFAULT_TEAM = "0" * 31 + "1"
+DEFAULT_PROJECT = "0" * 31 + "2"
+
+Id = String(32)
+Seconds = Float(53)
+
+# states of runs, and of tasks (which know no `cancelling`)
+QUEUED, RUNNING, CANCELLING = "queued", "running", "cancelling"
+SUCCEEDED, FAILED, CANCELLED = "succeeded", "failed", "cancelled"
+ACTIVE = (QUEUED, RUNNING, CANCELLING)
+FINAL = (SUCCEEDED, FAILED, CANCELLED)
+STATES = ACTIVE + FINAL
+
+
+class UtcDateTime(TypeDecorator[datetime]):
+    """A moment in UTC; SQLite keeps no zone, so it is put back on the way out."""
+
+    impl = DateTime(timezone=True)
+    cache_ok = True
+
+    def process_bind_param(self, value: datetime | None, dialect: Dialect) -> datetime | None:
+        return None if value is None else value.astimezone(UTC)
+
+    def process_result_value(self, value: datetime | None, dialect: Dialect) -> datetime | None:
+        if value is None:
+            return None
+        return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
+
+
+class Base(DeclarativeBase):
+    metadata = MetaData(
+        naming_convention={  # so that later migrations can name what they change, on SQLite too
+            "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+            "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+            "fk": "fk_%(table_name)s_%(column_0_name)s",
+            "pk": "pk_%(table_name)s",
+        }
+    )
+    type_annotation_map = {datetime: UtcDateTime, dict[str, Any]: JSON, list[Any]: JSON, bytes: LargeBinary}  # noqa: RUF012
+
+
+class Team(Base):
+    __tablename__ = "teams"
+    id: Mapped[str] = mapped_column(Id, primary_key=True, default=new_id)
+    name: Mapped[str] = mapped_column(String(200), unique=True)
+    created_at: Mapped[datetime] = mapped_column(default=utc_now)
+
+
+class Project(Base):
+    __tablename__ = "projects"
+    __table_args__ = (UniqueConstraint("team_id", "name"),)
+    id: Mapped[str] = mapped_column(Id, primary_key=True, default=new_id)
+    team_id: Mapped[str] = mapped_column(Id, ForeignKey("teams.id"))
+    name: Mapped[str] = mapped_column(String(200))
+    created_at: Mapped[datetime] = mapped_column(default=utc_now)
+
+
+class Case(Base):
+    """A name under which versions are saved."""
+
+    __tablename__ = "cases"
+    __table_args__ = (UniqueConstraint("project_id", "name"),)
+    id: Mapped[str] = mapped_column(Id, primary_key=True, default=new_id)
+    project_id: Mapped[str] = mapped_column(Id, ForeignKey("projects.id"))
+    name: Mapped[str] = mapped_column(String(200))
+    created_at: Mapped[datetime] = mapped_column(default=utc_now)
+
+
+class CaseVersion(Base):
+    """One saved case, never changed: what REST calls a case."""
+
+    __tablename__ = "case_versions"
+    __table_args__ = (UniqueConstraint("case_id", "number"), UniqueConstraint("project_id", "content_hash"))
+    id: Mapped[str] = mapped_column(Id, primary_key=True, default=new_id)
+    project_id: Mapped[str] = mapped_column(Id, ForeignKey("projects.id"))
+    case_id: Mapped[str] = mapped_column(Id, ForeignKey("cases.id"))
+    number: Mapped[int]
+    name: Mapped[str] = mapped_column(String(200))
+    content_hash: Mapped[str] = mapped_column(String(64))
+    canonical: Mapped[str] = mapped_column(Text, deferred=True)
+    """The case as JSON in SI with sorted keys; its SHA-256 is the content hash."""
+    yaml: Mapped[str] = mapped_column(Text, deferred=True)
+    """The text as submitted, or made from the case when it came as JSON."""
+    warnings: Mapped[list[Any]] = mapped_column(default=list)
+    created_at: Mapped[datetime] = mapped_column(default=utc_now)
+
+
+class DataSet(Base):
+    """Hydrodynamic data: a file, by content hash, versioned under its name."""
+
+    __tablename__ = "data_sets"
+    __table_args__ = (UniqueConstraint("project_id", "name", "version"), UniqueConstraint("project_id", "content_hash"))
+    id: Mapped[str] = mapped_column(Id, primary_key=True, default=new_id)
+    project_id: Mapped[str] = mapped_column(Id, ForeignKey("projects.id"))
+    name: Mapped[str] = mapped_column(String(200))
+    version: Mapped[int]
+    filename: Mapped[str] = mapped_column(String(200))
+    content_hash: Mapped[str] = mapped_column(String(64))
+    size: Mapped[int]
+    summary: Mapped[dict[str, Any]] = mapped_column(default=dict)
+    payload: Mapped[bytes] = mapped_column(LargeBinary, deferred=True)
+    created_at: Mapped[datetime] = mapped_column(default=utc_now)
+
+
+class Run(Base):
+    """One case version and the analyses asked of it. `state` is the truth about the run."""
+
+    __tablename__ = "runs"
+    __table_args__ = (Index("ix_runs_project_state", "project_id", "state"), Index("ix_runs_case", "case_version_id"))
+    id: Mapped[str] = mapped_column(Id, primary_key=True, default=new_id)
+    project_id: Mapped[str] = mapped_column(Id, ForeignKey("projects.id"))
+    case_version_id: Mapped[str] = mapped_column(Id, ForeignKey("case_versions.id"))
+    data_set_id: Mapped[str | None] = mapped_column(Id, ForeignKey("data_sets.id"))
+    """The very version of the data that the case's reference meant when the run was made."""
+    case_name: Mapped[str] = mapped_column(String(200))
+    content_hash: Mapped[str] = mapped_column(String(64))
+    analyses: Mapped[list[Any]]
+    state: Mapped[str] = mapped_column(String(20), default=QUEUED)
+    reason: Mapped[str | None] = mapped_column(Text, default=None)
+    outcomes: Mapped[dict[str, Any]] = mapped_column(default=dict)
+    warnings: Mapped[list[Any]] = mapped_column(default=list)
+    solver_version: Mapped[str | None] = mapped_column(String(50), default=None)
+    summary: Mapped[str | None] = mapped_column(Text, default=None, deferred=True)
+    created_at: Mapped[datetime] = mapped_column(default=utc_now)
+    started_at: Mapped[datetime | None] = mapped_column(default=None)
+    finished_at: Mapped[datetime | None] = mapped_column(default=None)
+
+
+class Task(Base):
+    """One chunk of a run. Lease, attempt, heartbeat and checkpoint belong here; times are seconds of `clock`."""
+
+    __tablename__ = "tasks"
+    __table_args__ = (UniqueConstraint("run_id", "number"), Index("ix_tasks_state", "state", "rung_at"))
+    id: Mapped[str] = mapped_column(Id, primary_key=True, default=new_id)
+    run_id: Mapped[str] = mapped_column(Id, ForeignKey("runs.id", ondelete="CASCADE"))
+    number: Mapped[int]
+    chunk: Mapped[dict[str, Any]]
+    weight: Mapped[float] = mapped_column(Seconds, default=1.0)
+    queue: Mapped[str] = mapped_column(String(50), default="runs")
+    state: Mapped[str] = mapped_column(String(20), default=QUEUED)
+    attempt: Mapped[int] = mapped_column(default=0)
+    """Raised by every claim; a write with another attempt than the row's is refused."""
+    releases: Mapped[int] = mapped_column(default=0)
+    """Attempts given back on an orderly shutdown; they do not count against the limit."""
+    worker: Mapped[str | None] = mapped_column(String(200), default=None)
+    lease_until: Mapped[float | None] = mapped_column(Seconds, default=None)
+    heartbeat_at: Mapped[float | None] = mapped_column(Seconds, default=None)
+    rung_at: Mapped[float] = mapped_column(Seconds, default=0.0)
+    """When its message was last sent."""
+    progress: Mapped[float] = mapped_column(Seconds, default=0.0)
+    message: Mapped[str] = mapped_column(String(500), default="")
+    reason: Mapped[str | None] = mapped_column(Text, default=None)
+    checkpoint: Mapped[bytes | None] = mapped_column(LargeBinary, default=None, deferred=True)
+    part: Mapped[bytes | None] = mapped_column(LargeBinary, default=None, deferred=True)
+
+
+class ChannelRow(Base):
+    """One labelled array of a run; `axes` names them and holds evenly spaced ones, the payload holds the rest."""
+
+    __tablename__ = "channels"
+    __table_args__ = (UniqueConstraint("run_id", "name"),)
+    id: Mapped[str] = mapped_column(Id, primary_key=True, default=new_id)
+    run_id: Mapped[str] = mapped_column(Id, ForeignKey("runs.id", ondelete="CASCADE"))
+    number: Mapped[int]
+    name: Mapped[str] = mapped_column(String(300))
+    unit: Mapped[str] = mapped_column(String(50))
+    description: Mapped[str] = mapped_column(Text)
+    band: Mapped[str] = mapped_column(String(20))
+    axes: Mapped[list[Any]]
+    shape: Mapped[list[Any]]
+    codec: Mapped[str] = mapped_column(String(30))
+    payload: Mapped[bytes] = mapped_column(LargeBinary, deferred=True)
+    axes_payload: Mapped[bytes] = mapped_column(LargeBinary, deferred=True)
+
+
+class Preview(Base):
+    """A letter box between POST /preview and the interactive worker; rows live for a minute."""
+
+    __tablename__ = "previews"
+    id: Mapped[str] = mapped_column(Id, primary_key=True, default=new_id)
+    project_id: Mapped[str] = mapped_column(Id, ForeignKey("projects.id"))
+    canonical: Mapped[str] = mapped_column(Text)
+    data_set_id: Mapped[str | None] = mapped_column(Id, default=None)
+    state: Mapped[str] = mapped_column(String(20), default=QUEUED)
+    answer: Mapped[str | None] = mapped_column(Text, default=None)
+    asked_at: Mapped[float] = mapped_column(Seconds)

@@ -1,0 +1,54 @@
+"""Puts right what faults leave behind: lost messages, lost workers. Safe to run in several processes at once."""
+
+from __future__ import annotations
+
+import logging
+import threading
+
+from sqlalchemy.exc import SQLAlchemyError
+
+from .database import Database
+from .doorbell import Doorbell
+from .repositories import PreviewRepository, RecoveryRepository
+from .settings import Settings
+
+BATCH = 100
+log = logging.getLogger(__name__)
+
+
+def reconcile(database: Database, doorbell: Doorbell, settings: Settings) -> int:
+    """One round; gives the number of tasks rung for."""
+    with database.read() as session:
+        expired = RecoveryRepository(session).expired(BATCH)
+    for task_id in expired:
+        with database.write() as session:
+            RecoveryRepository(session).settle_expired(task_id, settings.max_attempts)
+    with database.write() as session:
+        due = RecoveryRepository(session).ring_stale(settings.stale_seconds, BATCH)
+        PreviewRepository(session).sweep()
+    doorbell.ring(due)
+    return len(due)
+
+
+class Reconciler(threading.Thread):
+    """Rounds at an interval until stopped; a round that fails is told in the log and tried again."""
+
+    def __init__(self, database: Database, doorbell: Doorbell, settings: Settings):
+        super().__init__(name="reconciler", daemon=True)
+        self._context = (database, doorbell, settings)
+        self._interval = settings.reconcile_seconds
+        self._halt = threading.Event()
+
+    def run(self) -> None:
+        while not self._halt.is_set():
+            try:
+                reconcile(*self._context)
+            except SQLAlchemyError as error:
+                log.warning("The reconciler could not reach the database: %s", error)
+            except Exception:
+                log.exception("A round of the reconciler failed")
+            self._halt.wait(self._interval)
+
+    def stop(self) -> None:
+        self._halt.set()
+        self.join(5)

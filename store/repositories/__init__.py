@@ -1,0 +1,19 @@
+"""All queries. A repository gets a session and a scope, never commits, and gives rows or plain values."""
+
+from .cases import CaseRepository
+from .channels import ChannelRepository
+from .data_sets import DataSetRepository
+from .previews import PreviewRepository
+from .recovery import RecoveryRepository
+from .runs import RunRepository
+from .tasks import TaskRepository
+
+__all__ = [
+    "CaseRepository",
+    "ChannelRepository",
+    "DataSetRepository",
+    "PreviewRepository",
+    "RecoveryRepository",
+    "RunRepository",
+    "TaskRepository",
+]

@@ -1,0 +1,87 @@
+"""Settings of the service, read once from environment variables `SLOWDRIFT_…` (docs/operations.md lists them)."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from solver.outcome import SlowdriftError
+
+PREFIX = "SLOWDRIFT_"
+LOOPBACK = ("127.0.0.1", "localhost", "::1")
+
+
+class SettingsError(SlowdriftError):
+    """An environment variable holds something it cannot hold."""
+
+
+class Settings(BaseModel):
+    """One attribute per variable: `lease_seconds` is SLOWDRIFT_LEASE_SECONDS."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    data_dir: Path = Path(".slowdrift")
+    """Folder of the embedded database, the embedded broker and the logs."""
+    database_url: str = ""
+    """SQLAlchemy URL; empty: SQLite in the data folder."""
+    broker_url: str = ""
+    """redis://… or amqp://…; empty: files in the data folder."""
+    queue_prefix: str = Field("slowdrift", pattern=r"^[A-Za-z0-9_-]{1,60}$")
+    """Name before the queues, so that several installations can share a broker."""
+    lease_seconds: float = Field(60.0, gt=0)
+    """How long a task belongs to a worker that gives no sign."""
+    heartbeat_seconds: float = Field(1.0, gt=0)
+    """How often a worker renews the lease, reports progress and looks for a cancel."""
+    checkpoint_seconds: float = Field(30.0, gt=0)
+    """How often a long task saves where it is."""
+    max_attempts: int = Field(3, ge=1, le=100)
+    """How often a task may lose its worker before the run fails."""
+    reconcile_seconds: float = Field(5.0, gt=0)
+    """How often a worker looks for forgotten tasks."""
+    stale_seconds: float = Field(15.0, gt=0)
+    """How long a task may stay queued before its message is sent again."""
+    worker_memory_mb: int = Field(2000, ge=100)
+    """A worker process above this is replaced after its task."""
+    preview_seconds: float = Field(1.0, gt=0)
+    """How long POST /preview waits for an answer."""
+    max_request_bytes: int = Field(2_000_000, ge=1000)
+    """Largest request body, data sets apart."""
+    max_data_bytes: int = Field(64_000_000, ge=1000)
+    """Largest data set."""
+    allowed_hosts: str = ""
+    """Host names the API answers to beside this machine's own, with commas; * for any."""
+    log_level: str = "INFO"
+    """Level of the service's logs."""
+    solver: str = "solver.run"
+    """Module with run_chunk and merge; tests put a fake there."""
+
+    @classmethod
+    def from_env(cls, environ: Mapping[str, str] | None = None) -> Settings:
+        environ = os.environ if environ is None else environ
+        given = {key.removeprefix(PREFIX).lower(): value for key, value in environ.items() if key.startswith(PREFIX)}
+        known = {key: value for key, value in given.items() if key in cls.model_fields and value != ""}
+        try:
+            return cls.model_validate(known)
+        except ValidationError as error:
+            faults = [f"{PREFIX}{str(item['loc'][0]).upper()}: {item['msg']}" for item in error.errors()]
+            raise SettingsError("; ".join(faults)) from None
+
+    def as_env(self) -> dict[str, str]:
+        """The variables that make a child process read equal settings."""
+        return {PREFIX + name.upper(): str(value) for name, value in self.model_dump().items()}
+
+    @property
+    def database(self) -> str:
+        """URL with its driver: psycopg (version 3) for PostgreSQL."""
+        url = self.database_url or f"sqlite:///{self.data_dir.absolute() / 'slowdrift.db'}"
+        for plain in ("postgres://", "postgresql://"):
+            if url.startswith(plain):
+                return "postgresql+psycopg://" + url.removeprefix(plain)
+        return url
+
+    @property
+    def hosts(self) -> list[str]:
+        return [*LOOPBACK, *(host.strip() for host in self.allowed_hosts.split(",") if host.strip())]

@@ -1,0 +1,38 @@
+"""Data sets from the database as the solver's data source."""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+
+from solver.outcome import DataError
+from solver.vessel import data as hydrodynamics
+from solver.vessel.data import HydrodynamicData
+
+from .models import DataSet
+
+KEEP = 8
+_read: OrderedDict[str, HydrodynamicData] = OrderedDict()
+_lock = threading.Lock()
+
+
+class PinnedSource:
+    """One data set under whatever reference the case has for it: the version that was chosen when the run was made."""
+
+    def __init__(self, row: DataSet | None):
+        self._found = None if row is None else (row.content_hash, row.filename, row.payload)
+
+    def open(self, reference: str) -> HydrodynamicData:
+        if self._found is None:
+            raise DataError(f"There is no data set {reference[:100]!r} here; upload it first (POST /data-sets).")
+        content_hash, filename, payload = self._found
+        with _lock:
+            if content_hash in _read:
+                _read.move_to_end(content_hash)
+                return _read[content_hash]
+        made = hydrodynamics.read_bytes(payload, filename)
+        with _lock:
+            _read[content_hash] = made
+            while len(_read) > KEEP:
+                _read.popitem(last=False)
+        return made

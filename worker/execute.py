@@ -1,0 +1,188 @@
+"""One task from claim to final state. Knows no Celery: it gets a database, a solver and the id of a row."""
+
+from __future__ import annotations
+
+import json
+import logging
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib import metadata
+from typing import Any, Protocol, TypeVar
+
+import numpy as np
+from sqlalchemy.exc import OperationalError
+from sqlalchemy.orm import Session
+
+from solver.case import Case
+from solver.outcome import Cancelled, SlowdriftError
+from solver.results.part import Chunk, OnProgress, Part, Result
+from solver.vessel.data import DataSource
+from store.database import Database
+from store.effective import stored_case
+from store.errors import LostLeaseError
+from store.models import FAILED, SUCCEEDED
+from store.repositories import ChannelRepository, TaskRepository
+from store.repositories.tasks import Job, Outcome, Ticket
+from store.settings import Settings
+
+from .keeper import Keeper, Lost, Released
+
+log = logging.getLogger(__name__)
+Answer = TypeVar("Answer")
+
+
+class Solver(Protocol):
+    """The doors of solver.run that a worker uses."""
+
+    def run_chunk(
+        self,
+        case: Case,
+        data: DataSource,
+        chunk: Chunk,
+        checkpoint: bytes | None = None,
+        on_progress: OnProgress | None = None,
+    ) -> Part: ...
+
+    def merge(self, case: Case, parts: Sequence[Part]) -> Result: ...
+
+
+@dataclass(frozen=True)
+class Worker:
+    """What every task of a process shares."""
+
+    database: Database
+    solver: Solver
+    settings: Settings
+    name: str
+    shutting_down: Callable[[], bool] = lambda: False
+
+
+def execute(worker: Worker, task_id: str) -> str:
+    """Do the task if it is to be had. Gives a word on how it went, for the log; the row has the truth."""
+    with worker.database.write() as session:
+        ticket = TaskRepository(session).claim(
+            task_id, worker.name, worker.settings.lease_seconds, worker.settings.max_attempts
+        )
+    if ticket is None:
+        return "not to be had"
+    try:
+        with Keeper(worker.database, ticket, worker.settings, worker.shutting_down) as keeper:
+            return _attempt(worker, ticket, keeper)
+    except LostLeaseError as error:
+        log.warning("%s", error)
+        return "lost"
+
+
+def _attempt(worker: Worker, ticket: Ticket, keeper: Keeper) -> str:
+    try:
+        return _compute(worker, ticket, keeper)
+    except Lost:
+        return "lost"
+    except Released:
+        _persist(worker, lambda session: TaskRepository(session).release(ticket, keeper.checkpoint))
+        return "released"
+    except Cancelled:
+        _persist(worker, lambda session: TaskRepository(session).give_up(ticket))
+        return "cancelled"
+    except LostLeaseError:
+        raise
+    except SlowdriftError as error:
+        return _fail(worker, ticket, str(error))
+    except MemoryError:
+        return _fail(worker, ticket, "The computation ran out of memory; make the case smaller or give workers more.")
+    except OperationalError:
+        log.exception("Task %s lost the database; its lease will run out and it will be tried again", ticket.task_id)
+        return "no database"
+    except Exception as error:
+        log.exception("Task %s of run %s failed unexpectedly", ticket.task_id, ticket.run_id)
+        kind = type(error).__name__
+        return _fail(
+            worker, ticket, f"An error inside Slowdrift ({kind}); the worker's log has it under {ticket.run_id}."
+        )
+
+
+def _compute(worker: Worker, ticket: Ticket, keeper: Keeper) -> str:
+    with worker.database.read() as session:
+        job = TaskRepository(session).job(ticket)
+    case = stored_case(job.canonical, job.analyses)
+    if job.part is None:
+        part = worker.solver.run_chunk(case, job.data, job.chunk, job.checkpoint, keeper.on_progress)
+        if not job.alone:
+            payload = part.to_bytes()
+            if not _persist(worker, lambda session: TaskRepository(session).hand_in(ticket, payload)):
+                return "handed in"
+    parts = [part] if job.alone and job.part is None else _parts(worker, ticket)
+    result = worker.solver.merge(case, parts)
+    outcome = conclude(result, job)
+
+    def complete(session: Session) -> bool:
+        tasks = TaskRepository(session)
+        if not tasks.complete(ticket, outcome):
+            return False
+        ChannelRepository(session).put(ticket.run_id, result.channels)
+        return True
+
+    return outcome.state if _persist(worker, complete) else "cancelled"
+
+
+def _parts(worker: Worker, ticket: Ticket) -> list[Part]:
+    with worker.database.read() as session:
+        return [Part.from_bytes(payload) for payload in TaskRepository(session).parts(ticket.run_id)]
+
+
+def conclude(result: Result, job: Job) -> Outcome:
+    """State, reason and an outcome per analysis. An analysis that neither failed nor answered was skipped."""
+    failures = result.failures
+    outcomes = {
+        name: FAILED if name in failures else SUCCEEDED if name in result.summary else "skipped"
+        for name in job.analyses
+    }
+    reason = " ".join(f"{name}: {text}" for name, text in failures.items()) or None
+    return Outcome(
+        state=FAILED if failures else SUCCEEDED,
+        reason=reason,
+        outcomes=outcomes,
+        summary=to_json(result.summary),
+        warnings=tuple(str(text) for text in result.summary.get("warnings", ())),
+        solver_version=str(result.summary.get("provenance", {}).get("solver_version") or solver_version()),
+    )
+
+
+def to_json(value: Any) -> str:
+    """JSON without NaN or infinity: a result that holds one is no result."""
+    try:
+        return json.dumps(value, allow_nan=False, default=_plain)
+    except ValueError:
+        raise SlowdriftError("The result holds a number that is not finite; this is an error in Slowdrift.") from None
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    raise TypeError(f"{type(value).__name__} has no place in a summary")
+
+
+def solver_version() -> str:
+    try:
+        return metadata.version("slowdrift")
+    except metadata.PackageNotFoundError:
+        return "unknown"
+
+
+def _fail(worker: Worker, ticket: Ticket, reason: str) -> str:
+    _persist(worker, lambda session: TaskRepository(session).fail(ticket, reason, solver_version()))
+    return "failed"
+
+
+def _persist(worker: Worker, write: Callable[[Session], Answer]) -> Answer:
+    """One unit of work, tried again while the database is away; the fence makes repeating it safe."""
+    for pause in (0.5, 1.0, 2.0, 4.0, 8.0):
+        try:
+            with worker.database.write() as session:
+                return write(session)
+        except OperationalError as error:
+            log.warning("The database did not take a result (%s); trying again", error)
+            time.sleep(pause)
+    with worker.database.write() as session:
+        return write(session)

@@ -1,0 +1,49 @@
+"""The dashboard as one WSGI application; `cli/serve.py` mounts it beside the REST API."""
+
+from __future__ import annotations
+
+import importlib.util
+
+import flask
+from dash import Dash
+
+from frontend import pages, security
+from frontend.client import Client
+from frontend.components import shell
+
+TITLE = "Slowdrift"
+
+
+def create_app(api_base_url: str | None = None, prefix: str = "/app/") -> flask.Flask:
+    """The Flask server behind the pages.
+
+    api_base_url : origin of the REST API for server-side calls, e.g. ``http://127.0.0.1:8000``; None = the socket on
+        which the page's own request arrived (API and pages served together).
+    prefix : the path under which the browser sees the pages. The WSGI mount strips it (SCRIPT_NAME), so routes inside
+        start at ``/``.
+    """
+    prefix = "/" + prefix.strip("/") + "/" if prefix.strip("/") else "/"
+    server = flask.Flask("frontend")
+    server.config["SLOWDRIFT_CLIENT"] = Client(api_base_url)
+    server.config["COMPRESS_ALGORITHM"] = ["zstd", "br", "gzip", "deflate"]
+    server.config["COMPRESS_BR_LEVEL"] = 4
+    app = Dash(
+        __name__,
+        server=server,  # type: ignore[arg-type]  # Dash takes a Flask app, its hint does not say so
+        title=TITLE,
+        update_title="",
+        use_pages=True,
+        pages_folder="",
+        requests_pathname_prefix=prefix,
+        routes_pathname_prefix="/",
+        serve_locally=True,
+        compress=importlib.util.find_spec("flask_compress") is not None,
+        suppress_callback_exceptions=True,
+        meta_tags=[{"name": "viewport", "content": "width=device-width, initial-scale=1"}],
+    )
+    pages.register(app)
+    app.layout = shell.shell(prefix)
+    shell.register(app)
+    app.enable_dev_tools(debug=False)
+    security.add_headers(server, app.csp_hashes)
+    return server

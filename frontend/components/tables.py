@@ -1,0 +1,46 @@
+"""Small tables with a caption, numbers to the right, scrolling inside themselves on a narrow screen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import dash_mantine_components as dmc
+
+
+def table(
+    caption: str, head: Sequence[Any], rows: Sequence[Sequence[Any]], min_width: int = 320, note: str | None = None
+) -> dmc.Box:
+    """The first column is text, the others are numbers as text."""
+    align: list[dict[str, Any]] = [{}] + [{"ta": "right", "className": "sd-number"}] * (len(head) - 1)
+    body = [dmc.TableTr([dmc.TableTd(cell, **a) for cell, a in zip(row, align, strict=True)]) for row in rows]
+    return dmc.Box(
+        [
+            *([dmc.Title(caption, order=4, mb=6)] if caption else []),
+            dmc.TableScrollContainer(
+                dmc.Table(
+                    [
+                        dmc.TableThead(
+                            dmc.TableTr([dmc.TableTh(cell, **a) for cell, a in zip(head, align, strict=True)])
+                        ),
+                        dmc.TableTbody(body),
+                    ],
+                    withTableBorder=True,
+                    verticalSpacing=5,
+                    className="sd-table",
+                ),
+                minWidth=min_width,
+                type="native",
+            ),
+            *([dmc.Text(note, size="xs", c="dimmed", mt=4)] if note else []),
+        ]
+    )
+
+
+def facts(rows: Sequence[tuple[str, Any]]) -> dmc.Table:
+    """Names and values, one a line."""
+    body = [
+        dmc.TableTr([dmc.TableTh(name, c="dimmed", fw=500, w="40%"), dmc.TableTd(value, className="sd-break")])
+        for name, value in rows
+    ]
+    return dmc.Table(dmc.TableTbody(body), verticalSpacing=4, className="sd-facts")

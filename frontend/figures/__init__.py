@@ -1,0 +1,1 @@
+"""Pictures: plain data in, a plotly figure out; no Dash, no HTTP."""

@@ -1,0 +1,119 @@
+"""The time domain: a history that shows more of itself where one looks closer, and the extremes of every line."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import dash_mantine_components as dmc
+from dash import MATCH, Dash, Input, Output, Patch, State, no_update
+
+from frontend.client import attempt, client
+from frontend.components.cards import picture
+from frontend.components.options import bar, pick_response, pick_seed
+from frontend.components.tables import table
+from frontend.figures.base import axis_values, scaled
+from frontend.figures.history import history, seen
+from frontend.format import DOFS, MISSING, number, seconds
+from frontend.results import Results
+
+POINTS = 2000
+LINE = "line:"  # a response is a direction of the vessel, or this and the name of a line
+NOTE = "Drag over a stretch of time to see it in detail; a double click shows all of it."
+HEAD = ("Line", "end b, min.", "end b, max.", "least element", "largest element")
+
+
+def applies(results: Results) -> bool:
+    return bool(results.summary.get("time_domain")) and bool(responses(results))
+
+
+def responses(results: Results) -> dict[str, str]:
+    """What there is a history of, and its channel."""
+    found = {dof: f"time/vessel/{dof}" for dof in DOFS}
+    found |= {f"{LINE}{line}": f"time/line/{line}/end_b_tension" for line in results.lines}
+    return {key: name for key, name in found.items() if name in results.names}
+
+
+def said(response: str) -> str:
+    return f"tension at end b, {response.removeprefix(LINE)}" if response.startswith(LINE) else response
+
+
+def seeds(summary: dict[str, Any]) -> list[str]:
+    return [str(seed) for seed in (summary.get("provenance") or {}).get("seeds") or []]
+
+
+def render(results: Results) -> list[Any]:
+    offered = responses(results)
+    response = results.option("response", offered) or ""
+    seed = results.option("seed", seeds(results.summary))
+    channel = results.channels([offered[response]], points=POINTS, seed=seed)[offered[response]]
+    whole = f"{said(response)}, seed {seed}" if seed else said(response)
+    drawn = history(channel, said(response).split(",")[0])
+    card = picture(whole[0].upper() + whole[1:], drawn, f"{offered[response]}?{seed or ''}", NOTE, "history")
+    controls = [pick_response([(key, said(key)) for key in offered], response)]
+    controls += [pick_seed(seeds(results.summary), seed)] if seed else []
+    extremes = extremes_table(results.summary["time_domain"])
+    return [
+        bar(*controls),
+        dmc.Stack([card, *([extremes] if extremes else []), dmc.Text(told(results.summary), size="sm", c="dimmed")]),
+    ]
+
+
+def told(summary: dict[str, Any]) -> str:
+    """How long and how often it was computed."""
+    made = summary["time_domain"]
+    count = made.get("realisations") or 1
+    parts = [f"{count} seed{'s' if count != 1 else ''} of {seconds(made.get('duration'))}"]
+    if made.get("build_up"):
+        parts[0] += f" after {seconds(made['build_up'])} of build-up"
+    if made.get("time_step"):
+        parts.append(f"time step {made['time_step']:g} s")
+    if made.get("wall_time") is not None:
+        parts.append(f"computed in {seconds(made['wall_time'])}")
+    return ", ".join(parts) + "."
+
+
+def extremes_table(made: dict[str, Any]) -> Any:
+    """Per line, over all seeds and all time after the build-up, in kN."""
+    rows = []
+    for name, line in (made.get("lines") or {}).items():
+        end = line.get("end_b_tension") or {}
+        low, high = line.get("tension_min") or [], line.get("tension_max") or []
+        values = (end.get("min"), end.get("max"), min(low, default=None), max(high, default=None))
+        rows.append([name, *(MISSING if value is None else number(value / 1e3, 4) for value in values)])
+    if not rows:
+        return None
+    words = "Of all seeds. End b: the force on its support; elements: their axial force, the least and largest along the line."
+    return table("Extremes of tension [kN]", HEAD, rows, min_width=560, note=words)
+
+
+def register(app: Dash) -> None:
+    app.callback(
+        Output({"type": "history", "name": MATCH}, "figure"),
+        Input({"type": "history", "name": MATCH}, "relayoutData"),
+        State({"type": "history", "name": MATCH}, "id"),
+        State("run-id", "data"),
+        prevent_initial_call=True,
+    )(closer)
+
+
+def closer(change: dict[str, Any] | None, graph: dict[str, str], run_id: str) -> Any:
+    """The stretch of time on the screen once more, from the server, as finely as the picture can show it."""
+    span = seen(change)
+    if span is None:
+        return no_update
+    name, _, seed = graph["name"].rpartition("?")
+    params: dict[str, Any] = {"points": POINTS, "seed": seed or None}
+    if not isinstance(span, str):
+        params |= {"from": span[0], "to": span[1]}
+    found, error = attempt(lambda: client().channels(run_id, [name], **params))
+    channel = (found or {}).get(name)
+    if error or not channel or not channel["axes"][0]["values"]:
+        return no_update
+    patch = Patch()
+    patch["data"][0]["x"] = axis_values(channel)
+    patch["data"][0]["y"] = scaled(channel)[0]
+    whole = isinstance(span, str)
+    patch["layout"]["xaxis"]["autorange"] = whole
+    patch["layout"]["xaxis"]["range"] = None if whole else list(span)
+    patch["layout"]["yaxis"]["autorange"] = True
+    return patch

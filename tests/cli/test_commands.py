@@ -1,0 +1,97 @@
+"""The commands as a person types them: help, refusals, and what they leave behind."""
+
+from __future__ import annotations
+
+import socket
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from cli import options, serve
+from cli.main import main
+from store.settings import Settings, SettingsError
+from tests.service.running import ROOT, command, environment
+
+
+def slowdrift(tmp_path: Path, *arguments: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    env = environment(Settings(data_dir=tmp_path)) | variables
+    return subprocess.run(command(*arguments), env=env, capture_output=True, text=True, timeout=60, check=False)
+
+
+def test_help_names_the_commands(tmp_path: Path) -> None:
+    done = slowdrift(tmp_path, "--help")
+    assert done.returncode == 0
+    for name in ("run", "serve", "worker", "demo", "migrate"):
+        assert f"\n    {name} " in done.stdout
+    assert "{api" not in done.stdout
+
+
+def test_other_machines_are_refused_without_accounts(tmp_path: Path) -> None:
+    done = slowdrift(tmp_path, "serve", "--host", "0.0.0.0", "--port", "0")
+    assert done.returncode == 2
+    assert "no accounts yet" in done.stderr
+    assert "--allow-no-login" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("host", "loopback"),
+    [
+        ("127.0.0.1", True),
+        ("::1", True),
+        ("localhost", True),
+        ("0.0.0.0", False),
+        ("10.1.2.3", False),
+        ("example.org", False),
+    ],
+)
+def test_what_counts_as_this_machine(host: str, loopback: bool) -> None:
+    assert options.is_loopback(host) is loopback
+
+
+def test_a_taken_port_is_a_clear_sentence() -> None:
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        port = other.getsockname()[1]
+        with pytest.raises(
+            options.RefusedError, match=f"port {port} on 127.0.0.1 cannot be used: Address already in use"
+        ):
+            options.bind("127.0.0.1", port)
+
+
+def test_wrong_settings_are_named(tmp_path: Path) -> None:
+    done = slowdrift(tmp_path, "migrate", SLOWDRIFT_LEASE_SECONDS="soon")
+    assert done.returncode == 2
+    assert "SLOWDRIFT_LEASE_SECONDS" in done.stderr
+    with pytest.raises(SettingsError, match="QUEUE_PREFIX"):
+        Settings.from_env({"SLOWDRIFT_QUEUE_PREFIX": "a b"})
+    assert Settings.from_env({"SLOWDRIFT_DATABASE_URL": "postgres://a@b/c"}).database == "postgresql+psycopg://a@b/c"
+
+
+def test_migrate_and_check(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setenv("SLOWDRIFT_DATA_DIR", str(tmp_path))
+    assert main(["worker", "--check"]) == 2
+    assert "slowdrift migrate" in capsys.readouterr().err
+    assert main(["migrate"]) == 0
+    assert main(["worker", "--check"]) == 0
+    monkeypatch.setenv("SLOWDRIFT_BROKER_URL", "redis://127.0.0.1:1/0")
+    assert main(["worker", "--check"]) == 2
+    assert "the broker cannot be reached" in capsys.readouterr().err
+
+
+def test_the_settings_are_all_documented() -> None:
+    text = (ROOT / "docs" / "operations.md").read_text()
+    for name in Settings.model_fields:
+        assert f"`SLOWDRIFT_{name.upper()}`" in text, name
+
+
+def test_the_supervisor_has_no_worker_when_told() -> None:
+    import argparse
+
+    parser = argparse.ArgumentParser()
+    serve.add_options(parser)
+    given = parser.parse_args(["--workers", "0", "--no-pages"])
+    assert [child.name for child in serve._children(given, 3, 8000)] == ["api"]
+    assert [child.name for child in serve._children(parser.parse_args([]), 3, 8000)] == ["api", "worker", "interactive"]

@@ -1,0 +1,25 @@
+"""What holds for all tests: kernels are compiled before the first, and Hypothesis sets no time limit on an example."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+from hypothesis import settings
+
+settings.register_profile("untimed", deadline=None)
+settings.load_profile("untimed")
+
+WARM = "from solver.run import warm_up, warm_up_time_domain; print(f'{warm_up() + warm_up_time_domain():.0f}')"
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Fill the cache of compiled kernels once, so that no test or service under test waits for a compiler."""
+    if hasattr(session.config, "workerinput") or session.config.option.collectonly:
+        return
+    environment = {
+        **os.environ,
+        "PYTHONPATH": os.pathsep.join([str(session.config.rootpath), os.environ.get("PYTHONPATH", "")]),
+    }
+    done = subprocess.run([sys.executable, "-c", WARM], capture_output=True, text=True, env=environment, check=True)
+    print(f"kernels ready in {done.stdout.strip()} s (a first run compiles them)")

@@ -1,0 +1,57 @@
+"""Mounted as the service mounts it: prefix, own files, headers."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from a2wsgi import WSGIMiddleware
+from fastapi.testclient import TestClient
+
+from frontend.app import create_app
+from frontend.security import content_security_policy
+from tests.frontend.fake_api import create_fake
+
+
+@pytest.fixture(scope="module")
+def mounted() -> TestClient:
+    app = create_fake(0.0)
+    app.mount("/app", WSGIMiddleware(create_app("http://service.test")))
+    return TestClient(app)
+
+
+@pytest.mark.parametrize("path", ["/app/", "/app/new", "/app/runs/abc?tab=spectra"])
+def test_deep_links_answer(mounted: TestClient, path: str) -> None:
+    page = mounted.get(path)
+    assert page.status_code == 200
+    assert '"requests_pathname_prefix":"\\u002fapp\\u002f"' in page.text
+
+
+def test_without_the_slash_leads_to_the_pages(mounted: TestClient) -> None:
+    assert mounted.get("/app").url.path == "/app/"
+
+
+def test_every_file_is_our_own(mounted: TestClient) -> None:
+    page = mounted.get("/app/").text
+    addresses = re.findall(r'(?:src|href)="([^"]+)"', page)
+    assert len(addresses) > 10
+    assert all(address.startswith("/app/") for address in addresses)
+    for address in addresses:
+        assert mounted.get(address).status_code == 200, address
+
+
+def test_nothing_from_elsewhere_is_allowed(mounted: TestClient) -> None:
+    policy = mounted.get("/app/").headers["content-security-policy"]
+    assert "default-src 'self'" in policy
+    assert "http" not in policy
+    script = next(part for part in policy.split("; ") if part.startswith("script-src"))
+    assert "unsafe" not in script
+    assert "'sha256-" in script
+
+
+def test_policy_by_directive() -> None:
+    assert "script-src 'self' 'sha256-x'" in content_security_policy(["'sha256-x'"])
+
+
+def test_rest_stays_rest(mounted: TestClient) -> None:
+    assert mounted.get("/api/v1/runs").json()["items"] == []

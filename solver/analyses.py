@@ -20,7 +20,7 @@ from .results.part import OnProgress, Progress
 from .results.solved import ModesResult
 from .statics.newton import vessel_coupling
 from .statics.solve import StaticState
-from .time_domain.ensemble import timing
+from .time_domain.block import timing
 from .time_domain.sea import VesselLoads, components
 
 Array = np.ndarray

@@ -18,7 +18,7 @@ from .results.channels import make_channels, make_time_channels
 from .results.part import Chunk, OnProgress, Part, Progress, Result
 from .results.solved import Solved
 from .results.summary import make_summary, provenance
-from .results.time import KEY, merge_time, time_part, time_summary
+from .results.time import KEY, merge_time, time_part, time_summary, time_warnings
 from .statics.solve import StaticState, solve_statics
 from .time_domain.ensemble import march_ensemble
 from .time_domain.sea import low_border
@@ -136,6 +136,7 @@ def merge(case: Case, parts: list[Part]) -> Result:
         time_result = None
     if time_result is not None:
         summary["time_domain"] = time_summary(time_result)
+        summary["warnings"] += time_warnings(time_result)
         channels += make_time_channels(time_result, list(case.lines))
     return Result(summary, tuple(channels))
 

@@ -264,8 +264,6 @@ def _time_domain(case: Case) -> Iterator[FieldError]:
         yield FieldError(
             (*loc, "duration"), f"{spec.duration:g} s is shorter than output_step; allowed: ≥ {spec.output_step:g}"
         )
-    if spec.wave_kinematics == "instantaneous":
-        yield FieldError((*loc, "wave_kinematics"), "only `mean` is available in this version", "instantaneous")
     if not case.lines:
         yield FieldError(loc, "the time domain needs at least one line")
     for name, line in case.lines.items():

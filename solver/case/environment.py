@@ -43,6 +43,10 @@ class Seabed(Part):
     """Height over which the contact force grows from nothing to its linear law (1/a2)."""
     damping: LineDamping = 0.0
     """Damping of vertical motion of one node in full contact."""
+    friction: Annotated[float, Field(ge=0, le=2)] = 0.0
+    """Coulomb friction along the bed, as a share of the contact force. It acts in the time domain only."""
+    friction_speed: Annotated[Speed, Field(ge=1e-4, le=1)] = 0.01
+    """Horizontal speed of a node at which friction has 0.7 of its full size; a slower node creeps."""
 
     @model_validator(mode="after")
     def _one_law(self) -> Seabed:

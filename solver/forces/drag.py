@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from ..kernels.line import HALF
-from .weight import wet_half
+from .weight import wet_half, wet_point
 
 
 @njit(cache=True)
@@ -51,7 +51,7 @@ def force(line, x, v, u, a, out):  # type: ignore[no-untyped-def]
             rel[p] += u[i, p] - v[i, p]
         for j in range(max(i - 1, 0), min(i + 1, n)):
             other = j if j < i else j + 1
-            wet, _, _ = wet_half(x[i, 2], x[other, 2])
+            wet, _, _ = wet_half(x[i, 2], x[other, 2], line.D[j], line.L[j])
             if wet == 0.0:
                 continue
             length = 0.0
@@ -68,8 +68,9 @@ def force(line, x, v, u, a, out):  # type: ignore[no-untyped-def]
             ct = wet * line.cdt[j] * abs(vt) * vt
             for p in range(3):
                 out[i, p] += cn * (rel[p] - vt * t[p]) + ct * t[p]
-        if line.point_drag[i] > 0.0 and x[i, 2] < 0.0:
-            size = np.sqrt(rel[0] * rel[0] + rel[1] * rel[1] + rel[2] * rel[2])
+        share = wet_point(x[i, 2], line.point_radius[i])
+        if line.point_drag[i] * share > 0.0:
+            size = share * np.sqrt(rel[0] * rel[0] + rel[1] * rel[1] + rel[2] * rel[2])
             for p in range(3):
                 out[i, p] += line.point_drag[i] * size * rel[p]
 
@@ -118,7 +119,7 @@ def tangent(line, x, v, u, K, B):  # type: ignore[no-untyped-def]
             continue
         for j in range(max(i - 1, 0), min(i + 1, n)):
             other = j if j < i else j + 1
-            wet, own, far = wet_half(x[i, 2], x[other, 2])
+            wet, own, far = wet_half(x[i, 2], x[other, 2], line.D[j], line.L[j])
             if wet == 0.0 and own == 0.0:
                 continue
             for p in range(3):
@@ -139,15 +140,18 @@ def tangent(line, x, v, u, K, B):  # type: ignore[no-untyped-def]
                     B[row, HALF + q - p] += dV[p, q]
                     K[row, HALF + q - p] -= sign * dt[p, q]
                     K[row, HALF + shift + q - p] += sign * dt[p, q]
-        if line.point_drag[i] > 0.0 and x[i, 2] < 0.0:
-            _point_tangent(line, i, rel, slope, K, B)
+        share = wet_point(x[i, 2], line.point_radius[i])
+        if line.point_drag[i] * share > 0.0:
+            _point_tangent(line, i, rel, slope, share, K, B)
 
 
 @njit(cache=True)
-def _point_tangent(line, i, rel, slope, K, B):  # type: ignore[no-untyped-def]
+def _point_tangent(line, i, rel, slope, share, K, B):  # type: ignore[no-untyped-def]
     size = np.sqrt(rel[0] * rel[0] + rel[1] * rel[1] + rel[2] * rel[2])
+    rise = 0.5 / line.point_radius[i] if share < 1.0 else 0.0
     for p in range(3):
+        K[3 * i + p, HALF + 2 - p] += line.point_drag[i] * rise * size * rel[p]
         for q in range(3):
-            value = line.point_drag[i] * ((size if p == q else 0.0) + rel[p] * rel[q] / size)
+            value = share * line.point_drag[i] * ((size if p == q else 0.0) + rel[p] * rel[q] / size)
             B[3 * i + p, HALF + q - p] += value
             K[3 * i + p, HALF + 2 - p] -= value * slope[q]

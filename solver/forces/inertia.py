@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from .weight import wet_half
+from .weight import wet_half, wet_point
 
 
 @njit(cache=True)
@@ -16,7 +16,7 @@ def force(line, x, v, u, a, out):  # type: ignore[no-untyped-def]
     for i in range(n + 1):
         for j in range(max(i - 1, 0), min(i + 1, n)):
             other = j if j < i else j + 1
-            wet, _, _ = wet_half(x[i, 2], x[other, 2])
+            wet, _, _ = wet_half(x[i, 2], x[other, 2], line.D[j], line.L[j])
             for p in range(3):
                 t[p] = x[j + 1, p] - x[j, p]
             length = np.sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2])
@@ -24,9 +24,9 @@ def force(line, x, v, u, a, out):  # type: ignore[no-untyped-def]
             mass = wet * line.mw[j]
             for p in range(3):
                 out[i, p] += mass * ((1.0 + line.can[j]) * a[i, p] + (line.cat[j] - line.can[j]) * along * t[p])
-        if x[i, 2] < 0.0:
-            for p in range(3):
-                out[i, p] += line.point_mw[i] * (1.0 + line.point_ca[i]) * a[i, p]
+        share = wet_point(x[i, 2], line.point_radius[i])
+        for p in range(3):
+            out[i, p] += share * line.point_mw[i] * (1.0 + line.point_ca[i]) * a[i, p]
 
 
 @njit(cache=True)
@@ -43,14 +43,13 @@ def blocks(line, x):  # type: ignore[no-untyped-def]
     n = line.L.size
     M, C, t = np.zeros((n + 1, 3, 3)), np.zeros((n + 1, 3, 3)), np.empty(3)
     for i in range(n + 1):
+        point = wet_point(x[i, 2], line.point_radius[i]) * line.point_mw[i]
         for p in range(3):
-            M[i, p, p] += line.node_mass[i]
-            if x[i, 2] < 0.0:
-                M[i, p, p] += line.point_mw[i] * line.point_ca[i]
-                C[i, p, p] += line.point_mw[i] * (1.0 + line.point_ca[i])
+            M[i, p, p] += line.node_mass[i] + point * line.point_ca[i]
+            C[i, p, p] += point * (1.0 + line.point_ca[i])
         for j in range(max(i - 1, 0), min(i + 1, n)):
             other = j if j < i else j + 1
-            wet, _, _ = wet_half(x[i, 2], x[other, 2])
+            wet, _, _ = wet_half(x[i, 2], x[other, 2], line.D[j], line.L[j])
             for p in range(3):
                 t[p] = x[j + 1, p] - x[j, p]
             t /= np.sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2])

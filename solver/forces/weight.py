@@ -8,16 +8,25 @@ from ..kernels.line import HALF
 
 
 @njit(cache=True)
-def wet_half(z_node, z_other):  # type: ignore[no-untyped-def]
-    """Wet share of the half element at a node, and its derivatives with the node's and the other node's height (L7)."""
+def wet_half(z_node, z_other, D, L):  # type: ignore[no-untyped-def]
+    """Wet share of the half element at a node, and its derivatives with the node's and the other node's height (L7).
+
+    D, L : diameter and unstretched length of the whole element [m].
+    """
     z_mid = 0.5 * (z_node + z_other)
-    if z_node <= 0.0 and z_mid <= 0.0:
-        return 1.0, 0.0, 0.0
-    if z_node >= 0.0 and z_mid >= 0.0:
-        return 0.0, 0.0, 0.0
     low, high = min(z_node, z_mid), max(z_node, z_mid)
-    share = -low / (high - low)
-    d_low, d_high = -high / (high - low) ** 2, low / (high - low) ** 2
+    steep = 2.0 * (high - low) / L
+    e, slope = 0.0, 0.0  # what the section reaches above and below its axis, and its change with high - low
+    if steep < 1.0:
+        e, slope = 0.5 * D * (1.0 - steep * steep), -2.0 * D * steep / L
+    if high <= -e:
+        return 1.0, 0.0, 0.0
+    if low >= e:
+        return 0.0, 0.0, 0.0
+    whole = high - low + 2.0 * e
+    share = (e - low) / whole
+    d_high = (slope - share * (1.0 + 2.0 * slope)) / whole
+    d_low = -1.0 / whole - d_high
     if z_node <= z_mid:
         return share, d_low + 0.5 * d_high, 0.5 * d_high
     return share, d_high + 0.5 * d_low, 0.5 * d_low
@@ -33,8 +42,8 @@ def wet_point(z, radius):  # type: ignore[no-untyped-def]
 def force(line, x, v, u, a, out):  # type: ignore[no-untyped-def]
     """Add the vertical load of the half elements and of attachments (L6)."""
     for j in range(line.L.size):
-        wet1, _, _ = wet_half(x[j, 2], x[j + 1, 2])
-        wet2, _, _ = wet_half(x[j + 1, 2], x[j, 2])
+        wet1, _, _ = wet_half(x[j, 2], x[j + 1, 2], line.D[j], line.L[j])
+        wet2, _, _ = wet_half(x[j + 1, 2], x[j, 2], line.D[j], line.L[j])
         out[j, 2] += 0.5 * (wet1 * line.b_wet[j] - line.w_dry[j])
         out[j + 1, 2] += 0.5 * (wet2 * line.b_wet[j] - line.w_dry[j])
     for i in range(line.L.size + 1):
@@ -45,10 +54,10 @@ def force(line, x, v, u, a, out):  # type: ignore[no-untyped-def]
 def tangent(line, x, v, u, K, B):  # type: ignore[no-untyped-def]
     """Add the change of buoyancy of elements that pierce the surface (L7)."""
     for j in range(line.L.size):
-        if x[j, 2] <= 0.0 and x[j + 1, 2] <= 0.0:
+        if max(x[j, 2], x[j + 1, 2]) <= -0.5 * line.D[j]:
             continue
-        _, own1, other1 = wet_half(x[j, 2], x[j + 1, 2])
-        _, own2, other2 = wet_half(x[j + 1, 2], x[j, 2])
+        _, own1, other1 = wet_half(x[j, 2], x[j + 1, 2], line.D[j], line.L[j])
+        _, own2, other2 = wet_half(x[j + 1, 2], x[j, 2], line.D[j], line.L[j])
         half = 0.5 * line.b_wet[j]
         i, k = 3 * j + 2, 3 * j + 5
         K[i, HALF] -= half * own1

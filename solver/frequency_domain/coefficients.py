@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 
 from ..forces.drag import current
+from ..forces.weight import wet_point
 
 ROOT2 = math.sqrt(2.0)
 ANGLES = 512
@@ -178,12 +179,13 @@ def drag_blocks(line, x, wet, covariance, plane, is_random, as_vector):  # type:
             local_axes(x, j, plane, axes)
             coefficient = np.array([line.cdt[j], line.cdn[j], line.cdn[j]]) * wet[i, side]
             _add_drag(axes, V, S, coefficient, is_random, as_vector, B[i], mean[i])
-        if line.point_drag[i] > 0.0 and x[i, 2] < 0.0:
+        point = line.point_drag[i] * wet_point(x[i, 2], line.point_radius[i])
+        if point > 0.0:
             if as_vector:
-                _add_point_drag(V, S, line.point_drag[i], is_random, B[i], mean[i])
+                _add_point_drag(V, S, point, is_random, B[i], mean[i])
             else:
                 local_axes(x, min(i, n - 1), plane, axes)
-                _add_drag(axes, V, S, np.full(3, line.point_drag[i]), is_random, False, B[i], mean[i])
+                _add_drag(axes, V, S, np.full(3, point), is_random, False, B[i], mean[i])
     return B, mean
 
 

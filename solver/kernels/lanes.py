@@ -10,9 +10,9 @@ import math
 import numpy as np
 from numba import njit
 
-# rows of the packed element constants, shape (N, 12, Q)
-EL, EA, CDN, CDT, MW, CAN, CAT, W_DRY, B_WET, KB, KBQ, ELEMENT_ROWS = range(12)
-# rows of the packed node constants, shape (P, 9, Q)
+# rows of the packed element constants, shape (N, ELEMENT_ROWS, Q)
+EL, EA, CDN, CDT, MW, CAN, CAT, W_DRY, B_WET, KB, DIAMETER, ELEMENT_ROWS = range(12)
+# rows of the packed node constants, shape (P, NODE_ROWS, Q)
 MASS, A1, POINT_W, POINT_D, POINT_M, POINT_CA, BED_C, POINT_L, POINT_R, NODE_ROWS = range(10)
 BAND = 9  # diagonal and eight below it
 FAST = {"contract", "reassoc", "arcp", "nsz"}
@@ -102,7 +102,6 @@ def outer_forces(x, v, acc, C, D, t, seabed, wet, water, first_wave, current, ou
     acc : accelerations of the nodes; the inertia of the line itself is subtracted, so that out is the whole residual.
     """
     P, _, Q = x.shape
-    a2, bed = seabed[0], seabed[1]
     r = np.empty((6, Q))
     for i in range(P):
         w = i - first_wave
@@ -128,15 +127,34 @@ def outer_forces(x, v, acc, C, D, t, seabed, wet, water, first_wave, current, ou
                 continue
             _half_element(v, acc, C, t, wet, r, i, j, side, out)
         _attachment(D, x, acc, r, i, out)
-        lowest = 1e300
-        for q in range(Q):
-            lowest = min(lowest, x[i, 2, q])
-        if 2.0 * a2 * (lowest - bed) < 40.0:
-            for q in range(Q):
-                e = -2.0 * a2 * (x[i, 2, q] - bed)
-                grown = math.exp(min(e, 40.0))
-                depth = math.log1p(grown) if e < 40.0 else e
-                out[i, 2, q] += D[i, A1, q] * depth / (2.0 * a2) - D[i, BED_C, q] * grown / (1.0 + grown) * v[i, 2, q]
+        _bed(D, x, v, seabed, i, out)
+
+
+@njit(cache=True, fastmath=FAST, error_model="numpy")
+def bed_force(a1, a2, height):  # type: ignore[no-untyped-def]
+    """Spring force of the bed on a node, and its share in contact (L13)."""
+    e = -2.0 * a2 * height
+    grown = math.exp(min(e, 40.0))
+    depth = math.log1p(grown) if e < 40.0 else e
+    return a1 * depth / (2.0 * a2), grown / (1.0 + grown)
+
+
+@njit(cache=True, fastmath=FAST, error_model="numpy")
+def _bed(D, x, v, seabed, i, out):  # type: ignore[no-untyped-def]
+    """Spring, damping and friction of the bed on a node (L13, L15)."""
+    a2, bed, mu, slow = seabed[0], seabed[1], seabed[2], seabed[3]
+    lowest = 1e300
+    for q in range(x.shape[2]):
+        lowest = min(lowest, x[i, 2, q])
+    if 2.0 * a2 * (lowest - bed) >= 40.0:
+        return
+    for q in range(x.shape[2]):
+        force, share = bed_force(D[i, A1, q], a2, x[i, 2, q] - bed)
+        out[i, 2, q] += force - D[i, BED_C, q] * share * v[i, 2, q]
+        if mu > 0.0:
+            rub = mu * force / math.sqrt(v[i, 0, q] ** 2 + v[i, 1, q] ** 2 + slow * slow)
+            out[i, 0, q] -= rub * v[i, 0, q]
+            out[i, 1, q] -= rub * v[i, 1, q]
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
@@ -168,195 +186,45 @@ def _attachment(D, x, acc, r, i, out):  # type: ignore[no-untyped-def]
     if some == 0.0:
         return
     for q in range(r.shape[1]):
-        out[i, 2, q] += D[i, POINT_L, q] * min(max(0.5 * (1.0 - x[i, 2, q] / D[i, POINT_R, q]), 0.0), 1.0)
-        if x[i, 2, q] < 0.0:
-            size = D[i, POINT_D, q] * math.sqrt(r[0, q] ** 2 + r[1, q] ** 2 + r[2, q] ** 2)
-            for p in range(3):
-                out[i, p, q] += size * r[p, q] + D[i, POINT_M, q] * (
-                    r[3 + p, q] + D[i, POINT_CA, q] * (r[3 + p, q] - acc[i, p, q])
-                )
-
-
-@njit(cache=True, fastmath=FAST, error_model="numpy")
-def tangent(x, v, C, D, t, length, seabed, wet, water, first_wave, current, mass_factor, damping_factor, A):  # type: ignore[no-untyped-def]
-    """Lower band of K + mass_factor M + damping_factor B into A (3P, BAND, Q), overwritten: A[i, i - j] (L2, L5, L9, L11).
-
-    Symmetric and positive: the negative stiffness of slack elements and what drag owes to turning are left out.
-    """
-    P, _, Q = x.shape
-    A[:] = 0.0
-    a2, bed = seabed[0], seabed[1]
-    block, r = np.empty((6, Q)), np.empty((3, Q))
-    for j in range(P - 1):
-        for q in range(Q):
-            along = C[j, EA, q] / C[j, EL, q]
-            across = max(along - C[j, EA, q] / length[j, q], 0.0)
-            rest = along - across
-            t0, t1, t2 = t[j, 0, q], t[j, 1, q], t[j, 2, q]
-            block[0, q], block[1, q], block[2, q] = (
-                across + rest * t0 * t0,
-                across + rest * t1 * t1,
-                across + rest * t2 * t2,
-            )
-            block[3, q], block[4, q], block[5, q] = rest * t0 * t1, rest * t0 * t2, rest * t1 * t2
-        _add_diagonal(A, 3 * j, block, 1.0)
-        _add_diagonal(A, 3 * j + 3, block, 1.0)
-        _subtract_coupling(A, 3 * j + 3, block)
-    _bending_tangent(C, t, length, A)
-    for i in range(P):
-        w = i - first_wave
+        share = wet_point(x[i, 2, q], D[i, POINT_R, q])
+        out[i, 2, q] += D[i, POINT_L, q] * share
+        size = share * D[i, POINT_D, q] * math.sqrt(r[0, q] ** 2 + r[1, q] ** 2 + r[2, q] ** 2)
         for p in range(3):
-            for q in range(Q):
-                r[p, q] = current[i, p, q] - v[i, p, q]
-        if w >= 0:
-            for p in range(3):
-                for q in range(Q):
-                    r[p, q] += water[w, p, q]
+            push = r[3 + p, q] + D[i, POINT_CA, q] * (r[3 + p, q] - acc[i, p, q])
+            out[i, p, q] += size * r[p, q] + share * D[i, POINT_M, q] * push
+
+
+@njit(cache=True, fastmath=FAST, error_model="numpy")
+def wet_point(z, radius):  # type: ignore[no-untyped-def]
+    """Wet share of an attachment at height z (L7)."""
+    return min(max(0.5 * (1.0 - z / radius), 0.0), 1.0)
+
+
+@njit(cache=True, fastmath=FAST, error_model="numpy")
+def wet_shares(x, C, wet):  # type: ignore[no-untyped-def]
+    """Wet shares (P, 2, Q) of the half elements before and after each node (L7)."""
+    P, _, Q = x.shape
+    for j in range(P - 1):
+        top, thick = -1e300, 0.0
         for q in range(Q):
-            m = mass_factor * (D[i, MASS, q] + D[i, POINT_M, q] * D[i, POINT_CA, q])
-            m += damping_factor * 2.0 * D[i, POINT_D, q] * math.sqrt(r[0, q] ** 2 + r[1, q] ** 2 + r[2, q] ** 2)
-            block[0, q], block[1, q], block[2, q] = m, m, m
-            block[3, q], block[4, q], block[5, q] = 0.0, 0.0, 0.0
-        for side in range(2):
-            j = i - 1 + side
-            if 0 <= j <= P - 2:
-                _half_tangent(C, t, wet, r, i, j, side, mass_factor, damping_factor, block)
-        lowest = 1e300
-        for q in range(Q):
-            lowest = min(lowest, x[i, 2, q])
-        if 2.0 * a2 * (lowest - bed) < 40.0:
+            top = max(top, max(x[j, 2, q], x[j + 1, 2, q]))
+            thick = max(thick, C[j, DIAMETER, q])
+        if top <= -0.5 * thick:
             for q in range(Q):
-                share = 1.0 / (1.0 + math.exp(2.0 * a2 * (x[i, 2, q] - bed)))
-                block[2, q] += share * (D[i, A1, q] + damping_factor * D[i, BED_C, q])
-        _add_diagonal(A, 3 * i, block, 1.0)
-
-
-@njit(cache=True, fastmath=FAST, error_model="numpy")
-def _half_tangent(C, t, wet, r, i, j, side, mass_factor, damping_factor, block):  # type: ignore[no-untyped-def]
-    for q in range(r.shape[1]):
-        t0, t1, t2 = t[j, 0, q], t[j, 1, q], t[j, 2, q]
-        share = wet[i, side, q]
-        along = r[0, q] * t0 + r[1, q] * t1 + r[2, q] * t2
-        n0, n1, n2 = r[0, q] - along * t0, r[1, q] - along * t1, r[2, q] - along * t2
-        size = math.sqrt(n0 * n0 + n1 * n1 + n2 * n2) + 1e-12
-        d = damping_factor * share * C[j, CDN, q]
-        m = mass_factor * share * C[j, MW, q]
-        even = d * size + m * C[j, CAN, q]
-        s = d / size
-        k = 2.0 * damping_factor * share * C[j, CDT, q] * abs(along) - d * size + m * (C[j, CAT, q] - C[j, CAN, q])
-        block[0, q] += even + s * n0 * n0 + k * t0 * t0
-        block[1, q] += even + s * n1 * n1 + k * t1 * t1
-        block[2, q] += even + s * n2 * n2 + k * t2 * t2
-        block[3, q] += s * n0 * n1 + k * t0 * t1
-        block[4, q] += s * n0 * n2 + k * t0 * t2
-        block[5, q] += s * n1 * n2 + k * t1 * t2
-
-
-@njit(cache=True, fastmath=FAST, error_model="numpy")
-def _add_diagonal(A, row, b, factor):  # type: ignore[no-untyped-def]
-    for q in range(b.shape[1]):
-        A[row, 0, q] += b[0, q]
-        A[row + 1, 0, q] += b[1, q]
-        A[row + 2, 0, q] += b[2, q]
-        A[row + 1, 1, q] += b[3, q]
-        A[row + 2, 2, q] += b[4, q]
-        A[row + 2, 1, q] += b[5, q]
-
-
-@njit(cache=True, fastmath=FAST, error_model="numpy")
-def _subtract_coupling(A, row, b):  # type: ignore[no-untyped-def]
-    """Subtract the block from rows row … row + 2, columns three before."""
-    for q in range(b.shape[1]):
-        A[row, 3, q] -= b[0, q]
-        A[row, 2, q] -= b[3, q]
-        A[row, 1, q] -= b[4, q]
-        A[row + 1, 4, q] -= b[3, q]
-        A[row + 1, 3, q] -= b[1, q]
-        A[row + 1, 2, q] -= b[5, q]
-        A[row + 2, 5, q] -= b[4, q]
-        A[row + 2, 4, q] -= b[5, q]
-        A[row + 2, 3, q] -= b[2, q]
-
-
-@njit(cache=True, fastmath=FAST, error_model="numpy")
-def _bending_tangent(C, t, length, A):  # type: ignore[no-untyped-def]
-    """kb (g gᵀ/3 + PᵀP-like part) of nearly straight joints: kb Σ over directions across the line (symmetric, positive).
-
-    For small angles the exact tangent tends to kb aᵀ(I - t tᵀ)a with a = (1/lj, -1/lj - 1/lk, 1/lk).
-    """
-    N, _, Q = t.shape
-    w, s = np.empty((3, Q)), np.empty((6, Q))
-    for i in range(1, N):
-        for q in range(Q):
-            w[0, q] = 1.0 / length[i - 1, q]
-            w[2, q] = 1.0 / length[i, q]
-            w[1, q] = -w[0, q] - w[2, q]
-            t0 = 0.5 * (t[i - 1, 0, q] + t[i, 0, q])
-            t1 = 0.5 * (t[i - 1, 1, q] + t[i, 1, q])
-            t2 = 0.5 * (t[i - 1, 2, q] + t[i, 2, q])
-            size = 1.0 / max(t0 * t0 + t1 * t1 + t2 * t2, 1e-6)
-            k = C[i, KB, q]
-            s[0, q], s[1, q], s[2, q] = (
-                k * (1.0 - size * t0 * t0),
-                k * (1.0 - size * t1 * t1),
-                k * (1.0 - size * t2 * t2),
-            )
-            s[3, q], s[4, q], s[5, q] = -k * size * t0 * t1, -k * size * t0 * t2, -k * size * t1 * t2
-        for n in range(3):
-            for m in range(n + 1):
-                row, shift = 3 * (i - 1 + n), 3 * (n - m)
-                for p in range(3):
-                    for c in range(3):
-                        d = shift + p - c
-                        if d < 0:
-                            continue
-                        k = p if p == c else p + c + 2
-                        for q in range(Q):
-                            A[row + p, d, q] += w[n, q] * w[m, q] * s[k, q]
-
-
-@njit(cache=True, fastmath=FAST, error_model="numpy")
-def factor(A, first, last):  # type: ignore[no-untyped-def]
-    """LDLᵀ in place of rows first … last - 1 of the lower band (rows, BAND, Q); the rows from `last` on keep the Schur
-    complement. On return A[i, 0] holds 1/d of eliminated rows and A[i, k] the factor L of the column k before.
-    """
-    rows, _, Q = A.shape
-    run = BAND * Q
-    flat = A.reshape(rows, run)
-    scaled = np.empty((BAND, Q))
-    for k in range(first, last):
-        for q in range(Q):
-            flat[k, q] = 1.0 / flat[k, q]
-        most = min(rows - 1 - k, BAND - 1)
-        for d in range(1, most + 1):
+                wet[j, 1, q] = 1.0
+                wet[j + 1, 0, q] = 1.0
+        else:
             for q in range(Q):
-                scaled[d, q] = A[k + d, d, q] * A[k, 0, q]
-        for d in range(1, most + 1):
-            for e in range(1, d + 1):
-                for q in range(Q):
-                    A[k + d, d - e, q] -= scaled[d, q] * A[k + e, e, q]
-        for d in range(1, most + 1):
-            for q in range(Q):
-                A[k + d, d, q] = scaled[d, q]
+                one, other, D, L = x[j, 2, q], x[j + 1, 2, q], C[j, DIAMETER, q], C[j, EL, q]
+                wet[j, 1, q] = wet_half(one, other, D, L)
+                wet[j + 1, 0, q] = wet_half(other, one, D, L)
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
-def forward(A, b, first, last):  # type: ignore[no-untyped-def]
-    """L⁻¹ of rows first … last - 1 on b (rows, Q), in place; later rows receive what reaches them."""
-    rows, Q = b.shape
-    for k in range(first, last):
-        for d in range(1, min(rows - 1 - k, BAND - 1) + 1):
-            for q in range(Q):
-                b[k + d, q] -= A[k + d, d, q] * b[k, q]
-
-
-@njit(cache=True, fastmath=FAST, error_model="numpy")
-def backward(A, b, first, last):  # type: ignore[no-untyped-def]
-    """Finish the solution of rows last - 1 … first from those after them, which hold the answer already."""
-    rows, Q = b.shape
-    for k in range(last - 1, first - 1, -1):
-        for q in range(Q):
-            b[k, q] *= A[k, 0, q]
-        for d in range(1, min(rows - 1 - k, BAND - 1) + 1):
-            for q in range(Q):
-                b[k, q] -= A[k + d, d, q] * b[k + d, q]
+def wet_half(node, other, D, L):  # type: ignore[no-untyped-def]
+    """Wet share of the half element at a node, between its height and that of the middle (L7)."""
+    rise = 0.5 * abs(other - node)
+    steep = min(2.0 * rise / L, 1.0)
+    e = 0.5 * D * (1.0 - steep * steep)
+    low = min(node, 0.5 * (node + other))
+    return min(max((e - low) / max(rise + 2.0 * e, 1e-12), 0.0), 1.0)

@@ -40,6 +40,8 @@ class LineArrays(NamedTuple):
     point_mw: Array  # (N+1,) displaced mass of an attachment
     point_ca: Array  # (N+1,) its added mass coefficient
     a1: Array  # (N+1,) seabed stiffness of a node
-    seabed: Array  # (3,) a2 = 1/transition, height of the bed, damping of a node in full contact
+    seabed: (
+        Array  # (5,) a2 = 1/transition, height of the bed, damping of a node in full contact, friction and its speed
+    )
     current_z: Array  # (C,) heights, rising
     current_v: Array  # (C, 3) current velocity at those heights

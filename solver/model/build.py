@@ -61,7 +61,15 @@ def build(case: Case, data: DataSource | None) -> Model:
             raise DataError("the case refers to hydrodynamic data, but no source of data was given")
         hydro = data.open(case.vessel.hydrodynamics.data)
     vessel, warnings = build_vessel(case, hydro) if case.vessel is not None else (None, ())
-    return Model(case, frame, lines, vessel, hydro, warnings)
+    return Model(case, frame, lines, vessel, hydro, (*warnings, *_left_out(case)))
+
+
+def _left_out(case: Case) -> list[str]:
+    """What an analysis asked for does not take into account."""
+    others = [name.replace("_", " ") for name in case.analyses.requested() if name != "time_domain"]
+    if not case.environment.seabed.friction or not others:
+        return []
+    return [f"environment.seabed.friction acts in the time domain only: {', '.join(others)} leave it out"]
 
 
 def is_regular(sea: object) -> bool:

@@ -172,7 +172,8 @@ def discretise(case: Case, name: str, frame: float, found_length: float) -> Line
         L=L, EA=c["EA"], kb=kb, EI=c["EI"], D=D, w_dry=c["m"] * g * L, b_wet=rho * g * area * L,
         cdn=0.25 * rho * L * D * c["cn"], cdt=0.25 * rho * L * D * c["ct"], mw=0.5 * rho * area * L,
         can=c["can"], cat=c["cat"], **node, a1=a1,
-        seabed=np.array([1.0 / seabed.transition, -case.environment.depth, seabed.damping]), current_z=z, current_v=current,
+        seabed=np.array([1.0 / seabed.transition, -case.environment.depth, seabed.damping, seabed.friction,
+                         seabed.friction_speed]), current_z=z, current_v=current,
     )  # fmt: skip
 
 

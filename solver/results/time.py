@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 
 from ..case.quantities import DOF
-from ..time_domain.ensemble import Record, Timing
+from ..time_domain.block import Timing
+from ..time_domain.ensemble import Record
+from ..time_domain.resolution import worst
 from ..time_domain.statistics import band_variances, first_harmonic, over_seeds, spectrum
 from .channel import Axis
 from .channels import Made, channel
@@ -36,7 +38,7 @@ def time_part(record: Record, timing: Timing, lines: list[dict[str, Any]], borde
     head = {
         "seeds": record.seeds, "lines": lines, "border": border, "omega": omega, "h": timing.h, "every": timing.every,
         "build_up": timing.build_up, "kept": timing.kept, "iterations": record.iterations, "retries": record.retries,
-        "wall_time": record.wall_time,
+        "wall_time": record.wall_time, "findings": [one.as_dict() for one in record.findings],
     }  # fmt: skip
     return Part({KEY: head}, (), arrays)
 
@@ -100,7 +102,13 @@ def merge_time(parts: list[Part]) -> TimeResult | None:
         for name in found[0].arrays
     }
     head = {**heads[0], **{key: sum(one[key] for one in heads) for key in ("iterations", "retries", "wall_time")}}
+    head["findings"] = [found for one in heads for found in one["findings"]]
     return TimeResult(head, [seed for one in heads for seed in one["seeds"]], arrays)
+
+
+def time_warnings(result: TimeResult) -> list[str]:
+    """What speaks against the length of the step, as sentences."""
+    return [one.sentence(result.head["h"]) for one in worst(result.head["findings"])]
 
 
 def time_summary(result: TimeResult) -> dict[str, Any]:

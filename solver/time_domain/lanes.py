@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..forces.weight import wet_half
 from ..kernels import lanes as row
-from ..kernels.march import Body, Lines, Memory, State, Work
+from ..kernels.arrays import Body, Lines, Memory, State, Watch, Work
 from ..model.build import Model
 from ..model.line import LineModel, current_profile, harmonic_omega
 from ..outcome import CaseError, FieldError
@@ -15,7 +14,6 @@ from ..vessel.radiation import Retardation
 from ..vessel.rigid import turned
 
 Array = np.ndarray
-NEAR = 60.0  # m below the surface: nodes above this have their wet share found in every step
 MEMORY_STEP = 0.2  # s between samples of the memory
 
 
@@ -38,6 +36,7 @@ def _elements(line: LineModel, gap: int) -> Array:
     for column, values in (
         (row.EL, a.L), (row.EA, a.EA), (row.CDN, a.cdn), (row.CDT, a.cdt), (row.MW, a.mw), (row.CAN, a.can),
         (row.CAT, a.cat), (row.W_DRY, a.w_dry), (row.B_WET, a.b_wet), (row.KB, a.kb[:-1]),
+        (row.DIAMETER, a.D),
     ):  # fmt: skip
         rest[:, column] = values
     return out
@@ -77,14 +76,6 @@ def make_lines(model: Model, static: StaticState, seeds: int, first_wave: int) -
         one[: gap + 1] = 0.0
         one[-1] = 0.0
         free.append(one)
-    wet = np.ones((len(lines), P, 2))
-    near = np.zeros(P, dtype=bool)
-    for k, shape in enumerate(shapes):
-        for i in range(P):
-            near[i] |= shape[i, 2] > -NEAR
-            for side, other in ((0, i - 1), (1, i + 1)):
-                if 0 <= other < P:
-                    wet[k, i, side] = wet_half(shape[i, 2], shape[other, 2])[0]
     heights, velocities = current_profile(model.case, model.frame)
     current = [np.stack([np.interp(x[:, 2], heights, velocities[:, p]) for p in range(3)], axis=1) for x in shapes]
     phasors = [
@@ -101,7 +92,7 @@ def make_lines(model: Model, static: StaticState, seeds: int, first_wave: int) -
     return Lines(
         C=tile([_elements(line, gap) for line, gap in zip(lines, gaps, strict=True)]),
         D=tile([_nodes(line, gap) for line, gap in zip(lines, gaps, strict=True)]),
-        free=tile(free), wet=tile(list(wet)), near=near, current=tile(current), seabed=arrays.seabed[:2].copy(),
+        free=tile(free), current=tile(current), seabed=arrays.seabed[[0, 1, 3, 4]],
         kind=np.array([line.end_b.kind == "fairlead" for line in lines] * seeds).astype(np.int64), arm=tile(arms),
         number=np.array([float(line.multiplicity) for line in lines] * seeds),
         phasor=tile([np.stack([p.real, p.imag]) for p in phasors]), omega=np.array([harmonic_omega(model.case) or 0.0]),
@@ -169,14 +160,23 @@ def make_state(static: StaticState, seeds: int, samples: int) -> State:
     )  # fmt: skip
 
 
-def make_work(state: State, lines: Lines) -> Work:
-    """Scratch arrays of a block."""
+def make_watch(nodes: int, lanes: int) -> Watch:
+    """Nothing seen yet."""
+    none = lambda *shape: np.full((*shape, lanes), np.nan)  # noqa: E731
+    unseen = lambda n: np.stack([np.full((n, lanes), np.inf), np.full((n, lanes), -np.inf)])  # noqa: E731
+    bed = np.concatenate([unseen(nodes), none(1, nodes), np.zeros((1, nodes, lanes))])
+    return Watch(unseen(nodes - 1), none(2, nodes - 1), np.zeros((nodes - 1, lanes)), bed, np.zeros(lanes))
+
+
+def make_work(state: State, rows: int, first_wave: int) -> Work:
+    """Scratch arrays of a block. rows : of the water table, 6 where it is the water itself."""
     P, _, Q = state.x.shape
     S = state.s.shape[0]
     box = lambda: np.zeros((P, 3, Q))  # noqa: E731
     six = lambda: np.zeros((S, 6))  # noqa: E731
+    water = np.zeros((max(P - first_wave, 0), 6, Q))
+    terms = water if rows == 6 else np.zeros((water.shape[0], rows, Q))
     return Work(
         np.zeros((3 * P, row.BAND, Q)), np.zeros((3 * P, Q)), box(), box(), box(), box(), box(), np.zeros((P - 1, 3, Q)),
-        np.zeros((P - 1, Q)), lines.wet.copy(), np.zeros((max(P - lines.first_wave, 0), 6, Q)), np.zeros((S, 6, 6)), six(),
-        six(), six(), six(), six(),
+        np.zeros((P - 1, Q)), np.ones((P, 2, Q)), terms, water, np.zeros((S, 6, 6)), six(), six(), six(), six(), six(),
     )  # fmt: skip

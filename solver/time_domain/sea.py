@@ -1,4 +1,4 @@
-"""One seed's sea: amplitudes, forces on the vessel and kinematics at the lines, as tables over time (T10-T13)."""
+"""One seed's sea: amplitudes, and forces on the vessel as a table over time (T10-T12)."""
 
 from __future__ import annotations
 
@@ -13,13 +13,10 @@ from ..model.build import Model
 from ..model.line import harmonic_omega
 from ..outcome import CaseError, FieldError
 from ..vessel.drift import Drift, collect, difference_table
-from ..waves.kinematics import velocity
 from ..waves.spectra import spectrum
 
 Array = np.ndarray
-POINTS = 12  # of the water table per shortest wave
 LEAST_STEPS = 10  # of the march in the shortest wave or prescribed motion
-FAINT = 1e-4  # of the largest water velocity: nodes below that feel no waves
 
 
 @dataclass(frozen=True)
@@ -139,48 +136,3 @@ class VesselLoads:
         G = self.difference(amplitudes)
         half[1 : G.shape[0]] += 2.0 * G[1:]
         return np.asarray(np.fft.irfft(half * (0.5 * self.count), self.count, axis=0))
-
-
-class WaterTables:
-    """Water velocity and acceleration at the upper nodes of the lines, of any seed (T13)."""
-
-    def __init__(self, model: Model, waves: Components, shapes: list[Array]):
-        self.waves = waves
-        shortest = 2 * math.pi / float(waves.omega[-1])
-        points = 48 if waves.regular else POINTS
-        self.count = max(math.ceil(waves.period / shortest * points), 8)
-        self.step = waves.period / self.count
-        environment = model.case.environment
-        self.transfer = [
-            [
-                velocity(waves.omega, heading, x, environment.depth, environment.water.gravity)
-                for heading in waves.directions
-            ]
-            for x in shapes
-        ]
-        size = np.stack([self._size(parts) for parts in self.transfer]).max(axis=0)
-        felt = np.flatnonzero(size > FAINT * size.max(initial=0.0))
-        self.first = int(felt[0]) if felt.size else shapes[0].shape[0]
-
-    def _size(self, parts: list[Array]) -> Array:
-        """Largest standard deviation of water velocity per node."""
-        total = 0.0
-        for system, transfer in enumerate(parts):
-            weight = (
-                np.array([abs(self.waves.regular[system]) ** 2])
-                if self.waves.regular
-                else self.waves.densities[system] * self.waves.step
-            )
-            total = total + np.einsum("w,wpk->p", weight, np.abs(transfer) ** 2)
-        return np.sqrt(total)
-
-    def table(self, line: int, amplitudes: Array) -> Array:
-        """(T, P - first, 6) float32: velocity, then acceleration."""
-        index = self.waves.first + np.arange(self.waves.omega.size)
-        nodes = self.transfer[line][0].shape[1] - self.first
-        half = np.zeros((self.count // 2 + 1, nodes, 6), dtype=complex)
-        for transfer, amplitude in zip(self.transfer[line], amplitudes, strict=True):
-            u = transfer[:, self.first :] * amplitude[:, None, None]
-            half[index, :, :3] += u
-            half[index, :, 3:] += 1j * self.waves.omega[:, None, None] * u
-        return np.fft.irfft(half * (0.5 * self.count), self.count, axis=0).astype(np.float32)

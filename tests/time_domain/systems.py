@@ -11,7 +11,8 @@ from solver.case import parse_case
 from solver.case.analysis import TimeDomain
 from solver.model.build import Model, build
 from solver.statics.solve import StaticState, solve_statics
-from solver.time_domain.ensemble import Block, Record, Run, Timing, march_ensemble
+from solver.time_domain.block import Block, Run, Timing
+from solver.time_domain.ensemble import Record, march_ensemble
 from tests.systems import example, span
 
 Array = np.ndarray

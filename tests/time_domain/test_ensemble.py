@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from solver.outcome import Cancelled, CaseError
-from solver.time_domain import ensemble
+from solver.time_domain import block as blocks
 from solver.time_domain.ensemble import Record, march_ensemble
 from tests.systems import Source, moored_box, span
 from tests.time_domain.systems import block_of, marched, prepared, timed
@@ -42,6 +42,7 @@ def _line(turn: float = 0.0, **spec: Any) -> dict[str, Any]:
     data = span(140.0, *ends, 12, mass=60.0, EI=2e4, drag={"normal": 1.2, "tangential": 0.1})
     data["environment"]["seastates"] = [{"wave": "regular", "height": 6, "period": 9, "direction": f"{30 + turn} deg"}]
     data["environment"]["current"] = {"depths": [0, 60], "speeds": [0.8, 0.2], "direction": f"{240 + turn} deg"}
+    data["environment"]["seabed"] = {"friction": 0.5, "friction_speed": 0.05}
     return timed(data, **{"step": 0.05, "build_up": 27.0, "duration": 27.0, "output_step": 0.5, **spec})
 
 
@@ -82,7 +83,7 @@ def test_threads_and_sizes_of_blocks_change_nothing(
     together: Record, source: Source, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     _same(together, marched(_box(), source, (1, 2, 3, 4), threads=2)[0], 1e-10)
-    monkeypatch.setattr(ensemble, "LANES_WANTED", 100)
+    monkeypatch.setattr(blocks, "LANES_WANTED", 100)
     _same(together, marched(_box(), source, (1, 2, 3, 4))[0], 1e-10)
 
 
@@ -91,8 +92,8 @@ def test_a_resumed_run_is_the_run(
     make: Callable[..., dict[str, Any]], step: float, source: Source, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Also where a stride of 7 s is no whole number of renewals of Newton's matrix."""
-    monkeypatch.setattr(ensemble, "BLOCK_SECONDS", 7.0)
-    monkeypatch.setattr(ensemble, "LANES_WANTED", 3)
+    monkeypatch.setattr(blocks, "BLOCK_SECONDS", 7.0)
+    monkeypatch.setattr(blocks, "LANES_WANTED", 3)
     model, static, spec = prepared(make(step=step, build_up=20.0, duration=40.0, output_step=0.2), source)
     seeds = [1, 2]
     saved: list[bytes] = []
@@ -116,11 +117,11 @@ def test_a_checkpoint_taken_while_the_block_marches_on_is_that_of_the_last_strid
     for one in (resumed, whole):
         one.go(one.run.total)
     np.testing.assert_array_equal(resumed.out[1], whole.out[1])
-    np.testing.assert_array_equal(resumed.seen, whole.seen)
+    np.testing.assert_array_equal(resumed.watch.range, whole.watch.range)
 
 
 def test_what_progress_raises_stops_all_threads(source: Source, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ensemble, "BLOCK_SECONDS", 2.0)
+    monkeypatch.setattr(blocks, "BLOCK_SECONDS", 2.0)
     model, static, spec = prepared(_box(), source)
 
     def stop(_share: float, _save: Callable[[], bytes]) -> None:
@@ -138,37 +139,36 @@ def test_turning_a_moored_vessel_turns_nothing_in_its_own_axes(together: Record,
     np.testing.assert_allclose(turned.ends, together.ends, atol=1e-8 * together.ends.max())
 
 
-def test_turning_a_line_turns_its_motion() -> None:
-    """Position and force to 1e-8 of the motion; the wave table is in single precision, so its share is 1e-7."""
-    one, other = block_of(_line(tolerance=1e-10)), block_of(_line(77.0, tolerance=1e-10))
+@pytest.mark.parametrize("kinematics", ["mean", "instantaneous"])
+@pytest.mark.parametrize("make", ["waves", "random", "top"])
+def test_turning_a_line_turns_its_motion(make: str, kinematics: str) -> None:
+    """Position to 1e-8 of the motion, in regular and random waves and with a moving top, a current and friction in all."""
+    cases = {"waves": _line, "random": _random_line, "top": _moved}
+    one, other = (block_of(cases[make](angle, tolerance=1e-10, wave_kinematics=kinematics)) for angle in (0.0, 77.0))
     start = one.state.x.copy()
     c, s = np.cos(np.radians(77.0)), np.sin(np.radians(77.0))
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     for block in (one, other):
-        water = block.sea.water.astype(np.float64)
-        first = water if block is one else None
-        if first is None:
-            rows = one.sea.water.astype(np.float64)
-            split = rows.reshape(*rows.shape[:2], 2, 3, rows.shape[-1])
-            water = np.einsum("pq,tikqn->tikpn", turn, split).reshape(rows.shape)
-            np.testing.assert_allclose(block.sea.water, water, atol=3e-7 * np.abs(water).max())
         block.go(block.run.total)
     motion = np.abs(one.state.x - start).max()
     gap = np.abs(np.einsum("pq,iqn->ipn", turn, one.state.x) - other.state.x).max()
-    assert motion > 0.2
-    assert gap < 2e-7 * motion
-    still, still_turned = (block_of(_moved(turn_)) for turn_ in (0.0, 77.0))
-    start = still.state.x.copy()
-    for block in (still, still_turned):
-        block.go(block.run.total)
-    motion = np.abs(still.state.x - start).max()
-    gap = np.abs(np.einsum("pq,iqn->ipn", turn, still.state.x) - still_turned.state.x).max()
+    assert motion > 0.1
     assert gap < 1e-8 * motion
 
 
-def _moved(turn: float) -> dict[str, Any]:
-    """The line with a moving top instead of waves: nothing is in single precision."""
-    data = copy.deepcopy(_line(turn, tolerance=1e-10))
+def _random_line(turn: float, **spec: Any) -> dict[str, Any]:
+    """The line in two random seas."""
+    data = _line(turn, **spec)
+    data["environment"]["seastates"] = [
+        {"spectrum": "jonswap", "hs": 4, "tp": 9, "gamma": 2, "direction": f"{200 + turn} deg"},
+        {"spectrum": "jonswap", "hs": 2, "tp": 14, "gamma": 1, "direction": f"{170 + turn} deg"},
+    ]
+    return data
+
+
+def _moved(turn: float, **spec: Any) -> dict[str, Any]:
+    """The line with a moving top instead of waves."""
+    data = copy.deepcopy(_line(turn, **spec))
     del data["environment"]["seastates"]
     c, s = np.cos(np.radians(turn)), np.sin(np.radians(turn))
     along = {"amplitude": 3.0 * c, "period": 9.0}

@@ -10,7 +10,10 @@ import pytest
 from solver.case import parse_case
 from solver.forces.inertia import blocks as mass_blocks
 from solver.kernels import lanes
-from solver.kernels.march import Work, residual
+from solver.kernels.arrays import Work
+from solver.kernels.elimination import backward, factor, forward
+from solver.kernels.step import residual
+from solver.kernels.tangent import tangent
 from solver.model.build import Model, build
 from solver.model.system import forces
 from solver.statics.solve import StaticState, solve_statics
@@ -30,7 +33,13 @@ def _span(elements: int, **more: Any) -> dict[str, Any]:
     """A line from the bed to above the surface with everything on it."""
     data = span(150.0, (0, 0, -DEPTH), (70, 20, 15), elements, DEPTH, EA=2e7, EI=4e4, diameter=0.2,
                 drag={"normal": 1.2, "tangential": 0.15}, added_mass={"normal": 1.0, "tangential": 0.2})  # fmt: skip
-    data["environment"]["seabed"] = {"node_stiffness": 2e4, "transition": 0.5, "damping": 700.0}
+    data["environment"]["seabed"] = {
+        "node_stiffness": 2e4,
+        "transition": 0.5,
+        "damping": 700.0,
+        "friction": 0.6,
+        "friction_speed": 0.3,
+    }
     data["environment"]["current"] = {"depths": [0], "speeds": [0.8], "direction": "70 deg"}
     data["attachments"] = ATTACHMENTS
     data.update(more)
@@ -64,7 +73,7 @@ class Moving:
         P = padded_shapes(self.static)[0].shape[0]
         self.lines = make_lines(self.model, self.static, seeds, 0)
         state = make_state(self.static, seeds, 0)
-        self.work: Work = make_work(state, self.lines)
+        self.work: Work = make_work(state, 6, 0)
         rng = np.random.default_rng(seed)
         shape = state.x.shape
         self.x = state.x + size * rng.normal(size=shape)
@@ -79,7 +88,7 @@ class Moving:
     def tangent(self, mass: float, damping: float) -> Array:
         A = np.zeros_like(self.work.A)
         lanes.elements(self.x, self.lines.C, self.work.t, self.work.length)
-        lanes.tangent(
+        tangent(
             self.x, self.v, self.lines.C, self.lines.D, self.work.t, self.work.length, self.lines.seabed, self.work.wet,
             self.work.water, 0, self.lines.current, mass, damping, A,
         )  # fmt: skip
@@ -152,9 +161,9 @@ def test_factor_and_substitution_solve_the_system() -> None:
     A = _random_band(21, 3)
     b = np.random.default_rng(1).normal(size=(21, 3))
     factored, x = A.copy(), b.copy()
-    lanes.factor(factored, 0, 21)
-    lanes.forward(factored, x, 0, 21)
-    lanes.backward(factored, x, 0, 21)
+    factor(factored, 0, 21)
+    forward(factored, x, 0, 21)
+    backward(factored, x, 0, 21)
     for q in range(3):
         np.testing.assert_allclose(x[:, q], np.linalg.solve(_full(A[..., q]), b[:, q]), rtol=1e-12, atol=1e-14)
 
@@ -163,8 +172,8 @@ def test_stopping_early_leaves_the_schur_complement_and_the_condensed_load() -> 
     A = _random_band(18, 2)
     b = np.random.default_rng(1).normal(size=(18, 2))
     factored, x = A.copy(), b.copy()
-    lanes.factor(factored, 0, 15)
-    lanes.forward(factored, x, 0, 15)
+    factor(factored, 0, 15)
+    forward(factored, x, 0, 15)
     for q in range(2):
         full = _full(A[..., q])
         inner = np.linalg.solve(full[:15, :15], np.column_stack([full[:15, 15:], b[:15, q]]))

@@ -78,12 +78,6 @@ def test_with_a_step_that_resolves_it_the_snapping_line_is_answered() -> None:
     assert tension[1] == pytest.approx(121e3, rel=0.01)
 
 
-def test_kinematics_at_the_instantaneous_position_are_refused_not_ignored() -> None:
-    data = example("hanging-riser-case2")
-    with pytest.raises(CaseError, match="only `mean` is available"):
-        marched(timed(data, step=0.1, build_up=20.0, duration=20.0, output_step=0.1, wave_kinematics="instantaneous"))
-
-
 def test_a_record_too_short_for_any_component() -> None:
     data = example("hanging-riser-case2")
     data["environment"]["seastates"] = [{"spectrum": "jonswap", "hs": 3, "tp": 9, "gamma": 2, "direction": "0 deg"}]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from solver.model.system import stiffness
-from solver.time_domain.ensemble import Block
+from solver.time_domain.block import Block
 from tests.systems import dense, order, span
 from tests.time_domain.systems import block_of, damping_of_the_scheme, marched, riser, string, timed, wilson
 

@@ -38,7 +38,7 @@ def _on_springs() -> dict[str, Any]:
 def test_free_decay_on_linear_springs(dof: int, start: float) -> None:
     h, steps = 0.1, 600
     block = block_of(timed(_on_springs(), step=h, build_up=0, duration=steps * h, output_step=h))
-    body = block.body
+    body = block.setup.body
     omega = np.sqrt(body.K[dof, dof] / body.M[dof, dof])
     ratio = body.B[dof, dof] / (2 * omega * body.M[dof, dof])
     assert ratio > 0.001

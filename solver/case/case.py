@@ -269,10 +269,9 @@ def _time_domain(case: Case) -> Iterator[FieldError]:
     if not case.lines:
         yield FieldError(loc, "the time domain needs at least one line")
     for name, line in case.lines.items():
-        if line.end_a.fairlead is not None:
+        if line.end_a.fairlead is not None and line.end_b.fairlead is not None:
             yield FieldError(
-                ("lines", name, "end_a", "fairlead"),
-                "the time domain takes a fairlead at end b only; turn the line round",
+                ("lines", name, "end_a", "fairlead"), "the time domain takes a fairlead at one end of a line only"
             )
     if case.environment.regular and case.environment.random:
         yield FieldError(

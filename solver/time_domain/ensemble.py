@@ -16,6 +16,7 @@ from ..kernels.march import FAILED, SHARP, Sea, State, march
 from ..model.build import Model
 from ..outcome import Cancelled, CaseError, FieldError, NotConverged
 from ..statics.solve import StaticState
+from .facing import facing, turn_back
 from .lanes import make_body, make_lines, make_memory, make_state, make_work, padded_shapes
 from .scheme import SCHEMES
 from .sea import Components, VesselLoads, WaterTables, components
@@ -187,7 +188,9 @@ class Run:
     """An ensemble: everything that its seeds share."""
 
     def __init__(self, model: Model, static: StaticState, spec: TimeDomain):
-        self.model, self.static, self.spec = model, static, spec
+        self.model, self.spec = model, spec
+        self.static, self.turned = facing(static)
+        static = self.static
         self.time = timing(spec)
         self.total = self.time.build_up + self.time.kept
         self.scheme = SCHEMES[spec.scheme]
@@ -319,7 +322,7 @@ def _gather(run: Run, blocks: list[Block]) -> Record:
     def seeds_last(values: Array) -> Array:
         return np.moveaxis(values.reshape(*values.shape[:-1], -1, L), -2, -1)
 
-    return Record(
+    record = Record(
         [seed for block in blocks for seed in block.seeds],
         np.concatenate([block.out[0] for block in blocks], axis=1),
         np.concatenate([seeds_last(block.out[1]) for block in blocks], axis=-1),
@@ -328,6 +331,8 @@ def _gather(run: Run, blocks: list[Block]) -> Record:
         np.concatenate([seeds_last(block.seen[1]) for block in blocks], axis=-1),
         int(sum(block.counts[0] for block in blocks)), int(sum(block.counts[1] for block in blocks)),
     )  # fmt: skip
+    turn_back(run.static, run.turned, (record.tension, record.lowest, record.highest), record.ends)
+    return record
 
 
 def _resolved_bed(static: StaticState, spec: TimeDomain) -> None:

@@ -37,6 +37,8 @@ SUCCEEDED, FAILED, CANCELLED = "succeeded", "failed", "cancelled"
 ACTIVE = (QUEUED, RUNNING, CANCELLING)
 FINAL = (SUCCEEDED, FAILED, CANCELLED)
 STATES = ACTIVE + FINAL
+CASE, HYDRODYNAMICS = "case", "hydrodynamics"
+"""Kinds of runs."""
 
 
 class UtcDateTime(TypeDecorator[datetime]):
@@ -147,7 +149,7 @@ class Study(Base):
 
 
 class Run(Base):
-    """One case version and the analyses asked of it. `state` is the truth about the run."""
+    """One job: a case version and the analyses asked of it, or hydrodynamics. `state` is the truth about it."""
 
     __tablename__ = "runs"
     __table_args__ = (
@@ -159,7 +161,10 @@ class Run(Base):
     )
     id: Mapped[str] = mapped_column(Id, primary_key=True, default=new_id)
     project_id: Mapped[str] = mapped_column(Id, ForeignKey("projects.id"))
-    case_version_id: Mapped[str] = mapped_column(Id, ForeignKey("case_versions.id"))
+    kind: Mapped[str] = mapped_column(String(20), default=CASE, server_default=CASE)
+    """`case`, or `hydrodynamics`: a data set is to be computed (store/hydrodynamics.py)."""
+    case_version_id: Mapped[str | None] = mapped_column(Id, ForeignKey("case_versions.id"), default=None)
+    """None for a run that has no case."""
     data_set_id: Mapped[str | None] = mapped_column(Id, ForeignKey("data_sets.id"))
     """The very version of the data that the case's reference meant when the run was made."""
     case_name: Mapped[str] = mapped_column(String(200))

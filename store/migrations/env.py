@@ -2,6 +2,7 @@
 
 from alembic import context
 
+from store import hydrodynamics, people  # noqa: F401  (their tables belong to the metadata)
 from store.models import Base
 
 engine = context.config.attributes["engine"]

@@ -73,7 +73,8 @@ class RunRequest(BaseModel):
 
 class RunInfo(BaseModel):
     id: str = Field(examples=[ID])
-    case_id: str = Field(examples=[ID])
+    kind: str = Field("case", examples=["case"], description="case, or hydrodynamics (see GET /hydrodynamics/{id})")
+    case_id: str | None = Field(examples=[ID], description="null for a run without a case")
     case_name: str = Field(examples=["FPSO 2000 m"])
     content_hash: str = Field(examples=[HASH])
     analyses: list[str] = Field(examples=[["statics", "frequency_domain", "modes"]])

@@ -21,12 +21,14 @@ def archive(context: Context, scope: Scope, run_id: str) -> IO[bytes]:
     with context.database.read() as session:
         runs, channels = RunRepository(session, scope), ChannelRepository(session)
         view, summary = runs.view(run_id), runs.summary(run_id)
-        case = CaseRepository(session, scope).get_with_text(view.run.case_version_id)
+        version = view.run.case_version_id
+        case = None if version is None else CaseRepository(session, scope).get_with_text(version)
         spool = tempfile.SpooledTemporaryFile(max_size=8_000_000)  # noqa: SIM115 (the response closes it)
         with zipfile.ZipFile(spool, "w", zipfile.ZIP_DEFLATED) as target:
             target.writestr("run.json", info(view).model_dump_json(indent=1))
             target.writestr("summary.json", summary)
-            target.writestr("case.yaml", case.yaml)
+            if case is not None:
+                target.writestr("case.yaml", case.yaml)
             with target.open("channels.npz", "w", force_zip64=True) as inner:
                 _channels(inner, channels, run_id)
     spool.seek(0)

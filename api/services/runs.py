@@ -63,6 +63,7 @@ def info(view: RunView) -> RunInfo:
     pending = {} if run.state in FINAL else dict.fromkeys(run.analyses, "pending")
     return RunInfo(
         id=run.id,
+        kind=run.kind,
         case_id=run.case_version_id,
         case_name=run.case_name,
         content_hash=run.content_hash,

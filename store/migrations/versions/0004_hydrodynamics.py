@@ -48,8 +48,8 @@ def upgrade() -> None:
 def downgrade() -> None:
     """Hydrodynamic jobs go, since before this a run had a case; the data sets they made stay."""
     op.drop_table("hydrodynamic_jobs")
-    for table in ("channels", "tasks"):
-        op.execute(f"DELETE FROM {table} WHERE run_id IN (SELECT id FROM runs WHERE kind <> 'case')")
+    for name in ("channels", "tasks"):
+        op.execute(f"DELETE FROM {name} WHERE run_id IN (SELECT id FROM runs WHERE kind <> 'case')")
     op.execute("DELETE FROM runs WHERE kind <> 'case'")
     with op.batch_alter_table("runs") as table:
         table.alter_column("case_version_id", existing_type=CASE_VERSION, nullable=False)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -53,6 +54,14 @@ class Settings(BaseModel):
     """Largest data set."""
     allowed_hosts: str = ""
     """Host names the API answers to beside this machine's own, with commas; * for any."""
+    accounts: Literal["auto", "on"] = "auto"
+    """auto: people sign in as soon as there is an account; on: from the start."""
+    secret: str = Field("", pattern=r"^(.{32,})?$", repr=False)
+    """Key of the HMACs of tokens, 32 characters or more; empty: the file `secret` in the data folder."""
+    session_hours: float = Field(336.0, gt=0, le=8760)
+    """How long one stays signed in."""
+    public_url: str = Field("", pattern=r"^(https?://[^/]+)?/?$")
+    """Where people reach the service, for links and secure cookies; empty: as the request came in."""
     log_level: str = "INFO"
     """Level of the service's logs."""
     solver: str = "solver.run"

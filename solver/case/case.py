@@ -273,10 +273,6 @@ def _time_domain(case: Case) -> Iterator[FieldError]:
             yield FieldError(
                 ("lines", name, "end_a", "fairlead"), "the time domain takes a fairlead at one end of a line only"
             )
-    if case.environment.regular and case.environment.random:
-        yield FieldError(
-            ("environment", "seastates"), "the time domain takes random waves or regular waves, not both together"
-        )
     waves = [sea.period for sea in case.environment.regular]
     motions = [item for item in harmonic_frequencies(case) if item[0][0] == "lines"]
     if waves and max(waves) - min(waves) > 1e-9 * max(waves):

@@ -43,9 +43,7 @@ def _turned(line: LineModel) -> LineModel:
         values if name in WHOLE else np.ascontiguousarray(values[::-1])
         for name, values in line.arrays._asdict().items()
     ))  # fmt: skip
-    return replace(
-        line, arrays=arrays, end_a=line.end_b, end_b=line.end_a, anchor_at_b=not line.anchor_at_b
-    )
+    return replace(line, arrays=arrays, end_a=line.end_b, end_b=line.end_a, anchor_at_b=not line.anchor_at_b)
 
 
 def turn_back(static: StaticState, turned: tuple[int, ...], elements: tuple[Array, ...], ends: Array) -> None:

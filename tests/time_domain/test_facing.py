@@ -28,9 +28,7 @@ def _box() -> dict[str, Any]:
             {"type": "wire", "length": 120.0, "elements": 3},
         ]
     data["attachments"] = [{"line": "line-0", "arc_length": 300.0, "mass": 3000.0, "volume": 0.5, "drag_area": 2.0}]
-    data["environment"]["seastates"] = [
-        {"spectrum": "jonswap", "hs": 3, "tp": 9, "gamma": 2, "direction": "200 deg"}
-    ]
+    data["environment"]["seastates"] = [{"spectrum": "jonswap", "hs": 3, "tp": 9, "gamma": 2, "direction": "200 deg"}]
     data["analyses"] = {"frequency_domain": {"wave": {"from": 0.3, "to": 1.5}, "low": {"to": 0.3}}}
     return timed(data, step=0.1, build_up=20.0, duration=30.0, output_step=0.5)
 
@@ -58,7 +56,9 @@ def test_the_vessel_and_untouched_lines_move_alike(both: tuple[Record, Record]) 
 
 
 @pytest.mark.parametrize("index", [0, 2])
-def test_a_line_told_backwards_has_the_same_tensions_from_its_other_end(index: int, both: tuple[Record, Record]) -> None:
+def test_a_line_told_backwards_has_the_same_tensions_from_its_other_end(
+    index: int, both: tuple[Record, Record]
+) -> None:
     one, other = both
     gap = 1 if index == 2 else 0
     np.testing.assert_allclose(other.ends[:, ::-1, index], one.ends[:, :, index], rtol=1e-9)

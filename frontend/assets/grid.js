@@ -8,7 +8,9 @@
 
   functions.runsTheme = (theme) =>
     theme.withParams({
-      fontFamily: "inherit", headerFontWeight: 600, accentColor: "#0b6aa6", wrapperBorderRadius: 4, cellTextColor: "#212529",
+      fontFamily: "inherit", headerFontWeight: 600, accentColor: "var(--sd-link)", wrapperBorderRadius: 4, cellTextColor: "var(--sd-ink)",
+      backgroundColor: "var(--sd-paper)", foregroundColor: "var(--sd-ink)", borderColor: "var(--sd-line)", headerBackgroundColor: "var(--sd-soft)",
+      rowHoverColor: "var(--sd-soft)", headerTextColor: "var(--sd-ink)", browserColorScheme: "inherit",
       columnBorder: false, cellHorizontalPadding: 12,
     });
   functions.runAnalyses = (params) => (params.value || []).map((name) => name.replace(/_/g, " ")).join(", ");

@@ -101,21 +101,10 @@
   }
 
   /* --- run page ------------------------------------------------------------------------------------------------- */
-  /* Plotly is large: fetch it while the run is asked for, not after. */
-  function expectPictures(prefix) {
-    if (window.Plotly || document.getElementById("expect-plotly")) return;
-    const link = document.createElement("link");
-    link.id = "expect-plotly";
-    link.rel = "preload";
-    link.as = "script";
-    link.href = `${prefix || "/"}_dash-component-suites/plotly/package_data/plotly.min.js`;
-    document.head.appendChild(link);
-  }
-
-  async function openRun(id, tab, prefix) {
+  async function openRun(id) {
     close();
     if (!id) return "off";
-    if (tab !== "overview") expectPictures(prefix);
+    window.slowdrift.expectPlotly(); // large: fetch it while the run is asked for, not after
     const on = (run) => set("run-page", "run-live", { data: run });
     const stream = { url: `/runs/${encodeURIComponent(id)}/events`, poll: `/runs/${encodeURIComponent(id)}`, single: true, on };
     current = stream;

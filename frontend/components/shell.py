@@ -18,8 +18,7 @@ def shell(prefix: str) -> dmc.MantineProvider:
     return dmc.MantineProvider(
         id="mantine",
         theme=MANTINE,
-        defaultColorScheme="light",
-        forceColorScheme="light",
+        defaultColorScheme="auto",
         children=[
             dcc.Location(id="location", refresh="callback-nav"),
             dcc.Store(id="prefix", data=prefix),
@@ -45,6 +44,11 @@ def _header(prefix: str) -> dmc.AppShellHeader:
                 dmc.Burger(id="burger", opened=False, hiddenFrom="sm", size="sm", **hyphened(aria_label="Navigation")),
                 dcc.Link([_mark(), html.Span("Slowdrift")], href=prefix, className="sd-brand"),
                 html.Nav(dmc.Group(links, gap="xs", visibleFrom="sm", ml="lg"), **hyphened(aria_label="Pages")),
+                html.Div(id="account-corner", style={"marginLeft": "auto"}),
+                dmc.ColorSchemeToggle(
+                    lightIcon="☀", darkIcon="☾", variant="default", size="lg", id="scheme",
+                    **hyphened(aria_label="Light or dark"),
+                ),
             ],
             h="100%",
             px="md",

@@ -57,8 +57,6 @@ def register(app: Dash) -> None:
         live("slowdrift", "openRun"),
         Output("run-page", "data-live"),
         Input("run-id", "data"),
-        State("run-tabs", "value"),
-        State("prefix", "data"),
     )
     app.clientside_callback(
         live("slowdrift", "paintRun"),

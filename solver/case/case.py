@@ -61,14 +61,18 @@ def parse_case(data: Any) -> Case:
     try:
         case = Case.model_validate(data)
     except ValidationError as error:
-        found = [_field_error(item) for item in error.errors(include_url=False)]
-        raise CaseError(_telling(found)) from None
+        raise CaseError(field_errors(error)) from None
     except RecursionError:
         raise CaseError([FieldError((), "the case is nested too deeply to be read")]) from None
     errors = list(_cross_checks(case))
     if errors:
         raise CaseError(errors)
     return case
+
+
+def field_errors(error: ValidationError) -> list[FieldError]:
+    """Every fault of a field, with its value and the allowed range; without those that only follow from another."""
+    return _telling([_field_error(item) for item in error.errors(include_url=False)])
 
 
 _TAGS = {"jonswap", "pierson-moskowitz", "tabulated", "regular"}

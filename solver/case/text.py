@@ -63,7 +63,7 @@ def load_case(text: str | bytes) -> Case:
     try:
         return parse_case(data)
     except CaseError as error:
-        raise CaseError([_with_line(item, lines) for item in error.errors]) from None
+        raise CaseError([with_line(item, lines) for item in error.errors]) from None
 
 
 def read_text(text: str | bytes) -> tuple[Any, dict[tuple[str | int, ...], int]]:
@@ -156,7 +156,8 @@ def _plain(loc: tuple[str | int, ...], node: yaml.Node, is_key: bool = False) ->
         )
 
 
-def _with_line(error: FieldError, lines: dict[tuple[str | int, ...], int]) -> FieldError:
+def with_line(error: FieldError, lines: dict[tuple[str | int, ...], int]) -> FieldError:
+    """The error with the line of its field, or of what holds it."""
     loc = error.loc
     while loc and loc not in lines:
         loc = loc[:-1]

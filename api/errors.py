@@ -13,7 +13,15 @@ from fastapi_problem.error import Problem, StatusProblem
 from fastapi_problem.handler import ExceptionHandler, add_exception_handler, new_exception_handler
 
 from solver.outcome import CaseError, DataError, FieldError, NotConverged, SlowdriftError
-from store.errors import ConflictError, NotFoundError, TooSlowError, UnavailableError
+from store.errors import (
+    ConflictError,
+    ForbiddenError,
+    NotFoundError,
+    SignInError,
+    TooManyError,
+    TooSlowError,
+    UnavailableError,
+)
 
 DATA = ("vessel", "hydrodynamics", "data")
 
@@ -60,12 +68,25 @@ def _status(status: int, kind: str, title: str) -> Any:
     return handle
 
 
+def _sign_in(_: ExceptionHandler, __: Request, error: SignInError) -> Problem:
+    headers = {"www-authenticate": "Bearer"}
+    return Problem("Nobody is signed in.", type_="sign-in-required", detail=str(error), status=401, headers=headers)
+
+
+def _too_many(_: ExceptionHandler, __: Request, error: TooManyError) -> Problem:
+    headers = {"retry-after": str(error.retry_after)}
+    return Problem("Too many attempts.", type_="too-many", detail=str(error), status=429, headers=headers)
+
+
 def install(app: FastAPI) -> None:
     handlers: dict[type[Exception], Any] = {
         CaseError: _case,
         DataError: _data,
         NotConverged: _status(422, "not-converged", "The analysis found no answer."),
         NotFoundError: _status(404, "not-found", "Not found."),
+        SignInError: _sign_in,
+        ForbiddenError: _status(403, "forbidden", "The caller may not do this."),
+        TooManyError: _too_many,
         ConflictError: _status(409, "conflict", "The present state does not allow this."),
         TooSlowError: _status(504, "too-slow", "The answer did not come in time."),
         UnavailableError: _status(503, "unavailable", "A part of the service is not available."),

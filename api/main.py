@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
-from fastapi import APIRouter, FastAPI
+from fastapi import APIRouter, Depends, FastAPI
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.types import ASGIApp
 
@@ -15,7 +15,9 @@ from store.reconcile import Reconciler
 from store.settings import Settings
 
 from . import errors
+from .access import admit
 from .context import Context
+from .doorkeeper import Doorkeeper
 from .guard import Guard
 from .routes import cases, catalogue, data_sets, events, health, runs
 from .routes.common import problems
@@ -28,7 +30,7 @@ class Guarded(FastAPI):
 
     def build_middleware_stack(self) -> ASGIApp:
         context: Context = self.state.context
-        return Guard(super().build_middleware_stack(), context.settings.hosts)
+        return Guard(Doorkeeper(super().build_middleware_stack(), context, BASE), context.settings.hosts)
 
 
 def create_app(settings: Settings | None = None, reconcile: bool = True) -> FastAPI:
@@ -60,7 +62,7 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
     errors.install(app)
     app.add_middleware(GZipMiddleware, minimum_size=2000, compresslevel=5)
     app.include_router(health.router)
-    base = APIRouter(prefix=BASE, responses=problems(400, 413, 422))
+    base = APIRouter(prefix=BASE, responses=problems(400, 401, 403, 404, 413, 422), dependencies=[Depends(admit)])
     for module in (catalogue, cases, data_sets, events, runs):
         base.include_router(module.router)
     app.include_router(base)

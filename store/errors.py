@@ -13,6 +13,22 @@ class NotFoundError(SlowdriftError):
         super().__init__(f"There is no {what} {key[:100]!r}.")
 
 
+class SignInError(SlowdriftError):
+    """Nobody known asks, or the password is wrong."""
+
+
+class ForbiddenError(SlowdriftError):
+    """The caller is known, and may not do this."""
+
+
+class TooManyError(SlowdriftError):
+    """Too many attempts in a short time."""
+
+    def __init__(self, message: str, retry_after: int):
+        self.retry_after = retry_after
+        super().__init__(message)
+
+
 class ConflictError(SlowdriftError):
     """The row is in a state that does not allow this."""
 

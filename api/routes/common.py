@@ -26,10 +26,13 @@ def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
     content = {"application/problem+json": {"schema": _problem_schema()}}
     texts = {
         400: "The body cannot be read.",
+        401: "Nobody known asks; sign in, or send a key.",
+        403: "The caller may not do this, or a browser's request came from another origin.",
         404: "There is no such thing here.",
         409: "The present state does not allow this.",
         413: "The body is too large.",
         422: "A fault of the case or the request, field by field.",
+        429: "Too many attempts; the header Retry-After says for how long to wait.",
         503: "A part of the service is not available.",
         504: "The answer did not come in time.",
     }

@@ -10,6 +10,7 @@ from dash import Dash
 from frontend import caching, pages, security
 from frontend.client import Client
 from frontend.components import shell
+from frontend.editor import routes
 
 TITLE = "Slowdrift"
 FIRST = "first.js"  # in the head: the scheme is known before anything is drawn
@@ -44,12 +45,15 @@ def create_app(api_base_url: str | None = None, prefix: str = "/app/") -> flask.
         meta_tags=[{"name": "viewport", "content": "width=device-width, initial-scale=1"}],
     )
     app.index_string = app.index_string.replace("<html>", '<html lang="en">', 1).replace(
-        "{%css%}", f'{{%css%}}\n        <script src="{prefix}assets/{FIRST}?m={caching.asset_stamp(FIRST)}"></script>', 1
+        "{%css%}",
+        f'{{%css%}}\n        <script src="{prefix}assets/{FIRST}?m={caching.asset_stamp(FIRST)}"></script>',
+        1,
     )
     pages.register(app)
     app.layout = shell.shell(prefix)
     shell.register(app)
     app.enable_dev_tools(debug=False)
+    routes.register(server)
     security.add_headers(server, app.csp_hashes)
     caching.add_headers(server)
     return server

@@ -8,7 +8,7 @@ import numpy as np
 
 from .case import Case, harmonic_frequencies
 from .outcome import CaseError, DataError, FieldError
-from .vessel.data import DataSource, HydrodynamicData
+from .vessel.data import DataSource, HydrodynamicData, open_for
 from .vessel.rigid import about_cg, buoyancy_minus_weight, hydrostatic_stiffness, mass_matrix, water_warnings
 from .waves.spectra import hs_in_band, significant_height
 
@@ -44,7 +44,7 @@ def _opened(case: Case, data: DataSource | None) -> HydrodynamicData:
     if data is None:
         raise CaseError([FieldError(loc, "hydrodynamic data are referred to, but none can be opened here", reference)])
     try:
-        return data.open(reference)
+        return open_for(data, case.vessel.hydrodynamics, case.environment)
     except DataError as error:
         raise CaseError([FieldError(loc, str(error), reference)]) from None
 
@@ -72,7 +72,8 @@ def _hydrodynamics(case: Case, hydro: HydrodynamicData) -> None:
     if choice.drift.startswith("newman") and hydro.mean_drift is None:
         errors.append(FieldError(
             ("vessel", "hydrodynamics", "drift"),
-            "the data hold no mean_drift_force, which Newman's approximation needs; use drift: none", choice.drift,
+            f"the data hold no mean drift force, which Newman's approximation needs; use drift: "
+            f"{'qtf' if hydro.qtf is not None else 'none'}", choice.drift,
         ))  # fmt: skip
     for loc, omega in harmonic_frequencies(case):
         if not lowest <= omega <= top:

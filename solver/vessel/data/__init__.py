@@ -2,6 +2,6 @@
 
 from .hydrodynamics import HydrodynamicData
 from .qtf import QTF
-from .source import MAX_BYTES, DataSource, FileSource, read_bytes
+from .source import MAX_BYTES, DataSource, FileSource, open_for, read_bytes, read_files
 
-__all__ = ["MAX_BYTES", "QTF", "DataSource", "FileSource", "HydrodynamicData", "read_bytes"]
+__all__ = ["MAX_BYTES", "QTF", "DataSource", "FileSource", "HydrodynamicData", "open_for", "read_bytes", "read_files"]

@@ -10,7 +10,7 @@ from dash import ClientsideFunction, Dash, Input, Output, State, dcc, html, page
 from frontend.components.attributes import hyphened
 from frontend.theme import MANTINE
 
-LINKS = (("Runs", "/"), ("New run", "/new"))
+LINKS = (("Runs", "/"), ("New run", "/new"), ("Compare", "/compare"))
 
 
 def shell(prefix: str) -> dmc.MantineProvider:
@@ -46,7 +46,11 @@ def _header(prefix: str) -> dmc.AppShellHeader:
                 html.Nav(dmc.Group(links, gap="xs", visibleFrom="sm", ml="lg"), **hyphened(aria_label="Pages")),
                 html.Div(id="account-corner", style={"marginLeft": "auto"}),
                 dmc.ColorSchemeToggle(
-                    lightIcon="☀", darkIcon="☾", variant="default", size="lg", id="scheme",
+                    lightIcon="☀",
+                    darkIcon="☾",
+                    variant="default",
+                    size="lg",
+                    id="scheme",
                     **hyphened(aria_label="Light or dark"),
                 ),
             ],

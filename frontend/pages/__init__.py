@@ -5,7 +5,7 @@ from __future__ import annotations
 import dash
 from dash import Dash
 
-from frontend.pages import new, run, runs
+from frontend.pages import compare, new, run, runs
 
 
 def register(app: Dash) -> None:
@@ -13,5 +13,6 @@ def register(app: Dash) -> None:
     dash.register_page("runs", path="/", title="Runs – Slowdrift", name="Runs", layout=runs.layout, order=0)
     dash.register_page("new", path="/new", title="New run – Slowdrift", name="New run", layout=new.layout, order=1)
     dash.register_page("run", path_template="/runs/<run_id>", title="Run – Slowdrift", name="Run", layout=run.layout)
-    for page in (runs, new, run):
+    dash.register_page("compare", path="/compare", title="Compare – Slowdrift", name="Compare", layout=compare.layout)
+    for page in (runs, new, run, compare):
         page.register(app)

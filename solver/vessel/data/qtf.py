@@ -74,13 +74,14 @@ class QTF:
     def at(self, omega_m: Array, omega_n: Array, heading: float, heading_n: float | None = None) -> Array:
         """T2 at pairs of frequencies, arrays of one shape (...) [rad/s] -> complex (..., 6); bilinear (V23).
 
+        Below the lowest frequency it goes linearly to zero at omega = 0, as a long wave scatters nothing (V7).
         heading_n : that of the wave n when it is another. Raises DataError outside the frequencies or headings of the
         data, and where pairs were not computed.
         """
         shape = np.broadcast_shapes(np.shape(omega_m), np.shape(omega_n))
         m, n = (np.broadcast_to(np.asarray(part, float), shape).ravel() for part in (omega_m, omega_n))
         for part in (m, n):
-            check_range(part, float(self.omega[0]), float(self.omega[-1]), self.name, "the QTF")
+            check_range(part, 0.0, float(self.omega[-1]), self.name, "the QTF")
         if heading_n is None or abs(heading_n - heading) < 1e-9:
             i, j, w = heading_weights(self.headings, heading, self.name)
             table = self.values[i] if w == 0.0 else (1.0 - w) * self.values[i] + w * self.values[j]
@@ -109,7 +110,8 @@ class QTF:
         return None if found is None else np.conj(found.transpose(1, 0, 2))
 
     def _bilinear(self, table: Array, m: Array, n: Array) -> Array:
-        (a, s), (b, t) = _bracket(self.omega, m), _bracket(self.omega, n)
+        nodes, table = self._to_zero(table)
+        (a, s), (b, t) = _bracket(nodes, m), _bracket(nodes, n)
         unknown = np.isnan(table[..., 0])
         filled = np.where(unknown[..., None], 0.0, table) if unknown.any() else table
         result = np.zeros((m.size, 6), dtype=complex)
@@ -125,6 +127,16 @@ class QTF:
                     )
                 result += weight[:, None] * filled[a + di, b + dj]
         return result
+
+    def _to_zero(self, table: Array) -> tuple[Array, Array]:
+        """Frequencies and table with omega = 0 in front, where T2 vanishes (unknown for differences not computed)."""
+        nodes, count = np.concatenate([[0.0], self.omega]), self.omega.size
+        wide = np.zeros((count + 1, count + 1, 6), dtype=complex)
+        wide[1:, 1:] = table
+        if np.isnan(table).any():
+            far = np.flatnonzero(nodes > self.reach)
+            wide[0, far] = wide[far, 0] = np.nan
+        return nodes, wide
 
     def describe(self) -> dict[str, Any]:
         """What it holds, as plain JSON values: rad/s, headings in degrees."""

@@ -145,6 +145,7 @@ class Study(Base):
     pointers: Mapped[list[Any]]
     """Every pointer that a run of the study changes."""
     size: Mapped[int]
+    created_by: Mapped[str | None] = mapped_column(Id, default=None)
     created_at: Mapped[datetime] = mapped_column(default=utc_now)
 
 
@@ -182,6 +183,8 @@ class Run(Base):
     study_id: Mapped[str | None] = mapped_column(Id, ForeignKey("studies.id"), default=None)
     study_index: Mapped[int | None] = mapped_column(default=None)
     rerun_of: Mapped[str | None] = mapped_column(Id, default=None)
+    created_by: Mapped[str | None] = mapped_column(Id, default=None)
+    """The user who started it, where people sign in."""
     analyses: Mapped[list[Any]]
     state: Mapped[str] = mapped_column(String(20), default=QUEUED)
     reason: Mapped[str | None] = mapped_column(Text, default=None)

@@ -13,21 +13,24 @@ from .repositories import PreviewRepository, RecoveryRepository
 from .settings import Settings
 
 BATCH = 100
+SOME, FEW = 16, 2
+"""Tasks rung for in a round when nobody works, and when workers that live go from task to task by themselves."""
 log = logging.getLogger(__name__)
 
 
 def reconcile(database: Database, doorbell: Doorbell, settings: Settings) -> int:
     """One round; gives the number of tasks rung for."""
     with database.read() as session:
-        expired = RecoveryRepository(session).expired(BATCH)
+        expired = RecoveryRepository(session).expired(BATCH, settings.lease_seconds)
     for task_id in expired:
         with database.write() as session:
-            RecoveryRepository(session).settle_expired(task_id, settings.max_attempts)
+            RecoveryRepository(session).settle_expired(task_id, settings.max_attempts, settings.lease_seconds)
     with database.write() as session:
-        due = RecoveryRepository(session).ring_stale(settings.stale_seconds, BATCH)
+        recovery = RecoveryRepository(session)
+        due = recovery.ring_stale(settings.stale_seconds, FEW if recovery.at_work() else SOME)
         PreviewRepository(session).sweep()
     doorbell.ring(due)
-    return len(due)
+    return len({task_id for task_id, _ in due})
 
 
 class Reconciler(threading.Thread):

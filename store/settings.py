@@ -46,6 +46,12 @@ class Settings(BaseModel):
     """How long a task may stay queued before its message is sent again."""
     worker_memory_mb: int = Field(2000, ge=100)
     """A worker process above this is replaced after its task."""
+    task_memory_mb: int = Field(4000, ge=100)
+    """A task that needs more is ended, and its run fails with that reason."""
+    task_timeout_seconds: float = Field(900.0, gt=0)
+    """A task may take so long, or timeout_factor times its estimate if that is more."""
+    timeout_factor: float = Field(20.0, ge=1)
+    """See task_timeout_seconds."""
     preview_seconds: float = Field(1.0, gt=0)
     """How long POST /preview waits for an answer."""
     max_request_bytes: int = Field(2_000_000, ge=1000)
@@ -64,6 +70,8 @@ class Settings(BaseModel):
     """Where people reach the service, for links and secure cookies; empty: as the request came in."""
     log_level: str = "INFO"
     """Level of the service's logs."""
+    log_json: bool = False
+    """Logs as one JSON object a line."""
     solver: str = "solver.run"
     """Module with run_chunk and merge; tests put a fake there."""
 

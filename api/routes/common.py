@@ -10,6 +10,7 @@ from fastapi import Path as PathParameter
 from fastapi import Query
 
 from store.bundled import examples_dir
+from store.models import STATES
 
 from ..bodies import DRAIN_BYTES
 from ..schemas import ProblemInfo
@@ -20,6 +21,16 @@ CASE_BYTES = DRAIN_BYTES
 Limit = Annotated[int, Query(ge=1, le=500)]
 Cursor = Annotated[str | None, Query(max_length=64, description="`next_cursor` of the page before")]
 Key = Annotated[str, PathParameter(max_length=64)]
+
+
+StatesQuery = Annotated[
+    str | None,
+    Query(pattern=rf"^({'|'.join(STATES)})(,({'|'.join(STATES)}))*$", description="one or several, with commas"),
+]
+
+
+def states_of(text: str | None) -> tuple[str, ...]:
+    return tuple(text.split(",")) if text else ()
 
 
 def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:

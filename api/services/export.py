@@ -13,7 +13,7 @@ from store.repositories import CaseRepository, ChannelRepository, RunRepository
 from store.scope import Scope
 
 from ..context import Context
-from .runs import info
+from .runs import case_text, info
 
 
 def archive(context: Context, scope: Scope, run_id: str) -> IO[bytes]:
@@ -28,7 +28,7 @@ def archive(context: Context, scope: Scope, run_id: str) -> IO[bytes]:
             target.writestr("run.json", info(view).model_dump_json(indent=1))
             target.writestr("summary.json", summary)
             if case is not None:
-                target.writestr("case.yaml", case.yaml)
+                target.writestr("case.yaml", case_text(case, view.run))
             with target.open("channels.npz", "w", force_zip64=True) as inner:
                 _channels(inner, channels, run_id)
     spool.seek(0)

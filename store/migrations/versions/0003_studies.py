@@ -22,6 +22,7 @@ def _run_columns() -> list[sa.Column]:
         sa.Column("data_hash", sa.String(length=64), nullable=True),
         sa.Column("identity", sa.String(length=64), nullable=True),
         sa.Column("rerun_of", sa.String(length=32), nullable=True),
+        sa.Column("created_by", sa.String(length=32), nullable=True),
     ]
 
 
@@ -44,6 +45,7 @@ def upgrade() -> None:
         sa.Column("axes", sa.JSON(), nullable=True),
         sa.Column("pointers", sa.JSON(), nullable=False),
         sa.Column("size", sa.Integer(), nullable=False),
+        sa.Column("created_by", sa.String(length=32), nullable=True),
         sa.Column("created_at", sa.DateTime(timezone=True), nullable=False),
         sa.ForeignKeyConstraint(["case_version_id"], ["case_versions.id"], name=op.f("fk_studies_case_version_id")),
         sa.ForeignKeyConstraint(["project_id"], ["projects.id"], name=op.f("fk_studies_project_id")),

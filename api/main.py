@@ -16,10 +16,11 @@ from store.settings import Settings
 
 from . import errors
 from .access import admit
+from .attempts import Attempts
 from .context import Context
 from .doorkeeper import Doorkeeper
 from .guard import Guard
-from .routes import cases, catalogue, data_sets, events, health, runs
+from .routes import auth, cases, catalogue, data_sets, events, health, moordyn, runs, shares, studies, teams, users
 from .routes.common import problems
 
 BASE = "/api/v1"
@@ -59,11 +60,13 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
         lifespan=lifespan,
     )
     app.state.context = context
+    app.state.attempts = Attempts(settings)
     errors.install(app)
     app.add_middleware(GZipMiddleware, minimum_size=2000, compresslevel=5)
     app.include_router(health.router)
     base = APIRouter(prefix=BASE, responses=problems(400, 401, 403, 404, 413, 422), dependencies=[Depends(admit)])
-    for module in (catalogue, cases, data_sets, events, runs):
+    for module in (auth, cases, catalogue, data_sets, events, moordyn, runs, shares, studies, teams, users):
         base.include_router(module.router)
+    base.include_router(shares.opened)
     app.include_router(base)
     return app

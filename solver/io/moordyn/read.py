@@ -30,9 +30,9 @@ _OPTIONS = {  # words of an option, lower case -> its meaning here
     "wavekin": "water", "currents": "water", "current": "water", "waterkin": "water", "seafloorfile": "bathymetry",
 }  # fmt: skip
 _OF_THE_SOLVER = (
-    "echo", "dtm", "dt", "cfl", "tscheme", "writelog", "dtic", "tmaxic", "cdscaleic", "threshic", "icdfac", "icthresh", "ictmax",
-    "dtout", "writeunits", "icgendynamic", "disableoutput", "disableouttime", "outswitch", "inertialf", "inertialf_rampt",
-    "unifycurrentgrid", "dtwave", "wavekin_rampt", "fricdamp", "cv", "mc", "statdynfricscale",
+    "echo", "dtm", "dt", "cfl", "tscheme", "writelog", "dtic", "tmaxic", "cdscaleic", "threshic", "icdfac", "icthresh",
+    "ictmax", "dtout", "writeunits", "icgendynamic", "disableoutput", "disableouttime", "outswitch", "inertialf",
+    "inertialf_rampt", "unifycurrentgrid", "dtwave", "wavekin_rampt", "fricdamp", "cv", "mc", "statdynfricscale",
 )  # fmt: skip
 
 
@@ -246,7 +246,7 @@ def _lines(system: System, depth: float, vessel: Any, report: Report) -> dict[st
     attachments: list[dict[str, Any]] = []
     seen: dict[str, str] = {}
     for chain in system.chains:
-        name = f"line-{chain.links[0].id}"
+        name = f"line-{min(chain.links, key=lambda link: link.row.line).id}"
         loads = _loads(chain)
         spec = _line(chain, place)
         key = json.dumps([spec, loads], sort_keys=True)

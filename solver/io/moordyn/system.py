@@ -273,4 +273,6 @@ def _walk(system: System, at: dict[str, list[DeckLine]], line: DeckLine, start: 
         one, two = at[here]
         line = two if one is line else one
     chain = Chain(system.points[start], system.points[here], tuple(links), tuple(joints))
-    return chain if chain.start.kind != "coupled" or chain.end.kind == "coupled" else chain.turned()
+    if chain.start.kind == chain.end.kind:
+        return chain if chain.start.xyz[2] <= chain.end.xyz[2] else chain.turned()
+    return chain if chain.end.kind == "coupled" else chain.turned()

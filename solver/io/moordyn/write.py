@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from ...case import Case, end_point
 from ...case.lines import End, Line, LineType
@@ -18,10 +19,18 @@ STABLE = 0.2  # of the largest step that an explicit scheme takes in the stiffes
 
 @dataclass(frozen=True)
 class Placed:
-    """What statics found of a line: the place of its anchor [m, earth axes] and its unstretched length [m]."""
+    """What statics found of a line: the places of its ends [m, earth axes] and its unstretched length [m]."""
 
-    anchor: Xyz | None
+    end_a: Xyz
+    end_b: Xyz
     length: float
+
+    @staticmethod
+    def of(summary: Mapping[str, Any]) -> dict[str, Placed]:
+        """From the summary of a run that has statics (docs/summary.md), by line."""
+        lines = summary["statics"]["lines"]
+        places = {name: [tuple(line[key]["position"]) for key in ("end_a", "end_b")] for name, line in lines.items()}
+        return {name: Placed(places[name][0], places[name][1], line["length"]) for name, line in lines.items()}
 
 
 @dataclass(frozen=True)
@@ -63,7 +72,7 @@ def write_deck(case: Case, placed: Mapping[str, Placed] | None = None) -> Writte
     water = case.environment.water
     options = [
         (_step(case, soil, damping), "dtM", "time step (s)"), (water.gravity, "g", "gravity (m/s^2)"),
-        (water.density, "rhoW", "water density (kg/m^3)"), (case.environment.depth, "WtrDpth", "water depth (m)"),
+        (water.density, "rho", "water density (kg/m^3)"), (case.environment.depth, "WtrDpth", "water depth (m)"),
         (soil, "kBot", "bottom stiffness (Pa/m)"), (damping, "cBot", "bottom damping (Pa-s/m)"),
     ]  # fmt: skip
     friction = getattr(case.environment.seabed, "friction", None)
@@ -92,7 +101,7 @@ def _text(case: Case, tables: _Tables, options: list[tuple[float, str, str]], re
         out.append(f"{index} {_word(type_)} {a} {b} {_number(length)} {count} -")
     out.append(_heading("OPTIONS"))
     out += [f"{_number(value)} {word} - {text}" for value, word, text in options]
-    out += [_heading("OUTPUTS"), *(f"FairTen{index}" for index in range(1, len(tables.lines) + 1)), "END"]
+    out += [_heading("OUTPUTS"), *(f"FairTen{index}" for index in range(1, len(tables.lines) + 1))]
     return "\n".join([*out, "--------------------- need this line ---------------------", ""])
 
 
@@ -148,8 +157,8 @@ def _end_points(case: Case, name: str, line: Line, found: Placed | None) -> tupl
                 away[1] + anchor.radius * math.sin(anchor.azimuth),
             )
             points[key] = (x, y, -case.environment.depth)
-        elif found is not None and found.anchor is not None:
-            points[key] = found.anchor
+        elif found is not None:
+            points[key] = getattr(found, key)
         else:
             message = "the place of this anchor follows from its pretension; run statics first"
             raise CaseError(

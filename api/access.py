@@ -8,7 +8,7 @@ are listed in `NEEDS`. Then give the route its row in tests/access/matrix.py: a 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Container, Iterable
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal, TypeVar
 
@@ -25,6 +25,8 @@ from store.tokens import SHARE, digest, is_token
 from .context import Context, acting, get_context
 
 SAFE = ("GET", "HEAD", "OPTIONS")
+SHARE_TOKEN = "share_token"
+"""The parameter of addresses behind a share link."""
 Need = Literal["open", "link", "account", "self", "manage", "read", "edit", "own", "admin"]
 Endpoint = TypeVar("Endpoint", bound=Callable[..., Any])
 
@@ -82,7 +84,10 @@ def needs(need: Need) -> Callable[[Endpoint], Endpoint]:
     return mark
 
 
-def need_of(endpoint: Any, method: str) -> Need:
+def need_of(endpoint: Any, method: str, parameters: Container[str]) -> Need:
+    """What a route needs; one with a share link's token in its address needs that link and nothing else."""
+    if SHARE_TOKEN in parameters:
+        return "link"
     found: Need = getattr(endpoint, "needs", "read" if method in SAFE else "edit")
     return found
 
@@ -92,13 +97,13 @@ async def admit(request: Request) -> None:
 
     A dependency of every route under /api/v1 (api/main.py); `ScopeDep` gives what it noted.
     """
-    need = need_of(request.scope.get("endpoint"), request.method)
+    need = need_of(request.scope.get("endpoint"), request.method, request.path_params)
     scope, changes = await run_in_threadpool(_decide, request, need)
     act = acting.get()
     if act is not None:
         act.team_id, act.project_id = scope.team_id, scope.project_id
         act.action = f"{request.method} {_template(request)}"
-        act.subject = {name: str(value)[:100] for name, value in request.path_params.items() if name != "token"}
+        act.subject = {name: str(value)[:100] for name, value in request.path_params.items() if "token" not in name}
         act.silent = not changes
     request.scope.setdefault("state", {})["admitted"] = scope
 
@@ -115,7 +120,7 @@ def _decide(request: Request, need: Need) -> tuple[Scope, bool]:
     context, principal = get_context(request), get_principal(request)
     changes = request.method not in SAFE and need != "read"
     if need == "link":
-        return _shared(context, str(request.path_params.get("token", ""))), False
+        return _shared(context, str(request.path_params[SHARE_TOKEN])), False
     demand = NEEDS[need]
     if demand is None:
         return Scope(user_id=principal.user.id if principal and principal.user else None), changes

@@ -45,6 +45,12 @@ class Unit:
     session: Session
     rings: list[tuple[str, str]] = field(default_factory=list)
 
+    def tell(self, **subject: str) -> None:
+        """For the audit log: what the change is about, beside what the address says."""
+        act = acting.get()
+        if act is not None:
+            act.subject |= subject
+
 
 @dataclass(frozen=True)
 class Context:

@@ -10,7 +10,7 @@ class NotFoundError(SlowdriftError):
 
     def __init__(self, what: str, key: str):
         self.what, self.key = what, key
-        super().__init__(f"There is no {what} {key[:100]!r}.")
+        super().__init__(f"There is no {what} {key[:100]!r}." if key else f"There is no such {what}, or no longer.")
 
 
 class SignInError(SlowdriftError):

@@ -17,7 +17,6 @@ from store.settings import Settings
 from . import errors
 from .access import admit
 from .attempts import Attempts
-from .attempts import Attempts
 from .context import Context
 from .doorkeeper import Doorkeeper
 from .guard import Guard
@@ -62,14 +61,12 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
     )
     app.state.context = context
     app.state.attempts = Attempts(settings)
-    app.state.attempts = Attempts(settings)
     errors.install(app)
     app.add_middleware(GZipMiddleware, minimum_size=2000, compresslevel=5)
     app.include_router(health.router)
     base = APIRouter(prefix=BASE, responses=problems(400, 401, 403, 404, 413, 422), dependencies=[Depends(admit)])
     for module in (auth, cases, catalogue, data_sets, events, moordyn, runs, shares, studies, teams, users):
         base.include_router(module.router)
-    base.include_router(shares.opened)
     base.include_router(shares.opened)
     app.include_router(base)
     return app

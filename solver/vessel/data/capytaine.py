@@ -11,15 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...case.quantities import DOF
 from ...outcome import DataError
 from .hydrodynamics import HydrodynamicData
 from .interpolate import TURN
 from .netcdf import Dataset, dof_order, numbers, open_netcdf, require, scalar, take, vector3
 
 Array = np.ndarray
-ASYMMETRY = 0.02  # of √(ii·jj): above it a radiation matrix that is not symmetric is worth a warning
-NEGATIVE = 0.01  # of its peak: below minus this, damping on the diagonal is worth a warning
 MAX_OMEGA, MAX_HEADINGS = 5000, 721
 VARIABLES = (  # all that is read of a file
     "omega", "wave_direction", "radiating_dof", "influenced_dof", "complex", "added_mass", "radiation_damping",
@@ -59,9 +56,8 @@ def read_capytaine(payload: bytes, name: str) -> HydrodynamicData:
     if speed:
         raise DataError(f"{name}: forward_speed is {speed:g} m/s; compute the data at zero speed")
     warnings: list[str] = []
-    added_mass, zero, infinite = _radiation(dataset, "added_mass", layout, warnings)
-    damping, _, _ = _radiation(dataset, "radiation_damping", layout, warnings)
-    _check_damping(damping, layout, warnings)
+    added_mass, zero, infinite = _radiation(dataset, "added_mass", layout)
+    damping, _, _ = _radiation(dataset, "radiation_damping", layout)
     excitation, excitation_zero = _excitation(dataset, layout)
     density, gravity, depth = _water(dataset, name, warnings)
     rotation_centre = vector3(dataset, "rotation_center", name)
@@ -135,10 +131,8 @@ def _headings(dataset: Dataset, name: str) -> tuple[Array, Array]:
     return angle[keep], keep
 
 
-def _radiation(
-    dataset: Dataset, variable: str, layout: _Layout, warnings: list[str]
-) -> tuple[Array, Array | None, Array | None]:
-    """Finite frequencies (W, 6, 6), and the matrices at 0 and infinity when they are there; made symmetric."""
+def _radiation(dataset: Dataset, variable: str, layout: _Layout) -> tuple[Array, Array | None, Array | None]:
+    """Finite frequencies (W, 6, 6), and the matrices at 0 and infinity when they are there."""
     name = layout.name
     values = require(
         dataset, variable, (layout.dim, "influenced_dof", "radiating_dof"), name,
@@ -146,38 +140,12 @@ def _radiation(
     )  # fmt: skip
     values = values[:, layout.influenced][:, :, layout.radiating].real
     finite = _finite(values[layout.finite], variable, name)
-    peak = np.sqrt(np.abs(np.diagonal(finite, axis1=1, axis2=2)).max(axis=0))
-    scale = np.maximum(np.outer(peak, peak), 1e-300)
-    gap = (np.abs(finite - finite.transpose(0, 2, 1)) / scale).max(axis=0)
-    if gap.max() > ASYMMETRY:
-        i, j = np.unravel_index(int(gap.argmax()), gap.shape)
-        warnings.append(
-            f"{name}: {variable} of {DOF[i]} and {DOF[j]} differs from its transpose by {100 * gap.max():.1f} % "
-            f"(threshold {100 * ASYMMETRY:.0f} %); the mean is taken; refine the mesh"
-        )
     edges = []
     for edge in (0.0, math.inf):
         index = layout.at(edge)
         there = index is not None and bool(np.all(np.isfinite(values[index])))
-        edges.append(_symmetric(values[index]) if there else None)
-    return _symmetric(finite), edges[0], edges[1]
-
-
-def _symmetric(matrix: Array) -> Array:
-    result: Array = 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
-    return result
-
-
-def _check_damping(damping: Array, layout: _Layout, warnings: list[str]) -> None:
-    diagonal = np.diagonal(damping, axis1=1, axis2=2)
-    share = diagonal.min(axis=0) / np.maximum(diagonal.max(axis=0), 1e-300)
-    for dof in np.flatnonzero(share < -NEGATIVE):
-        omega = layout.omega[layout.finite][diagonal[:, dof].argmin()]
-        warnings.append(
-            f"{layout.name}: radiation_damping of {DOF[dof]} is negative at {omega:.4g} rad/s, "
-            f"{-100 * share[dof]:.1f} % of its peak (threshold {100 * NEGATIVE:.0f} %): an irregular frequency; "
-            f"compute with a lid or a finer mesh"
-        )
+        edges.append(values[index] if there else None)
+    return finite, edges[0], edges[1]
 
 
 def _excitation(dataset: Dataset, layout: _Layout) -> tuple[Array, Array | None]:

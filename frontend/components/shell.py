@@ -26,7 +26,7 @@ def shell(prefix: str) -> dmc.MantineProvider:
             dmc.NotificationContainer(id="notices", position="top-right", autoClose=6000),
             html.A("Skip to the page", href="#page", className="sd-skip"),
             dmc.AppShell(
-                [_header(prefix), _navbar(prefix), dmc.AppShellMain(html.Div(page_container, id="page"))],
+                [_header(prefix), _navbar(prefix), dmc.AppShellMain([_away(), html.Div(page_container, id="page")])],
                 id="shell",
                 header={"height": 56},
                 navbar={"width": 220, "breakpoint": "sm", "collapsed": {"mobile": True, "desktop": True}},
@@ -59,6 +59,12 @@ def _header(prefix: str) -> dmc.AppShellHeader:
             gap="sm",
         )
     )
+
+
+def _away() -> html.Div:
+    """Shown by `assets/away.js` while requests do not get through."""
+    words = "The server does not answer. What you write is kept in this browser; this page goes on when it is back."
+    return html.Div(words, id="sd-away", hidden=True, role="status")
 
 
 def _mark() -> html.Span:

@@ -36,6 +36,20 @@ def pick_seed(seeds: Sequence[str], chosen: str) -> dmc.Select:
     )  # fmt: skip
 
 
+def pick_one(name: str, label: str, choices: Sequence[tuple[str, str]], chosen: str, width: int) -> dmc.Select:
+    """One of many, as a list: (value, text)."""
+    data = [{"value": value, "label": text} for value, text in choices]
+    return dmc.Select(
+        id=option_id(name),
+        label=label,
+        data=data,
+        value=chosen,
+        allowDeselect=False,
+        w=width,
+        searchable=len(data) > 12,
+    )
+
+
 def pick(name: str, label: str, choices: Sequence[tuple[str, str]], chosen: str, owner: str = "run") -> dmc.Stack:
     """A few alternatives side by side: (value, text)."""
     data = [{"value": value, "label": text} for value, text in choices]

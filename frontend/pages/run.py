@@ -18,11 +18,11 @@ from frontend.panels import history
 from frontend.results import Results
 from frontend.theme import FINAL
 
-OPTIONS = ("line", "scale", "response", "seed")
+OPTIONS = ("line", "scale", "response", "seed", "motion")
 
 
 def layout(run_id: str = "", tab: str = "overview", **query: Any) -> Any:
-    """`/runs/{run_id}?tab=&line=&scale=&response=&seed=` opens exactly what was on the screen."""
+    """`/runs/{run_id}?tab=&line=&scale=&response=&seed=&motion=` opens exactly what was on the screen."""
     options = {name: query[name] for name in OPTIONS if query.get(name)}
     return dmc.Stack(
         [

@@ -103,7 +103,7 @@ def test_head_and_panel_of_a_finished_run(vessel_run: dict[str, Any]) -> None:
     assert "frequency domain" in facts
     assert f"/api/v1/runs/{vessel_run['id']}/summary" in texts(actions)
     assert "Synthetic" in texts(told)
-    assert len(tabs) == 7
+    assert len(tabs) == 8
     drawn, used = run.panel("spectra", {}, "succeeded", vessel_run["id"])
     assert used["line"] == "bow-port"
     assert drawn

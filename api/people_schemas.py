@@ -8,9 +8,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints
 
+from store.passwords import MAX_LENGTH, MIN_LENGTH
+
 from .schemas import ID, TIME, RunInfo
 
-MIN_PASSWORD, MAX_PASSWORD = 10, 200
 Role = Literal["viewer", "editor", "owner"]
 KeyScope = Literal["read", "submit", "admin"]
 
@@ -32,8 +33,8 @@ Email = Annotated[
 ]
 Password = Annotated[
     str,
-    StringConstraints(min_length=MIN_PASSWORD, max_length=MAX_PASSWORD),
-    Field(examples=["seven wet swans sail"], description=f"{MIN_PASSWORD} to {MAX_PASSWORD} characters, any"),
+    StringConstraints(min_length=MIN_LENGTH, max_length=MAX_LENGTH),
+    Field(examples=["seven wet swans sail"], description=f"{MIN_LENGTH} to {MAX_LENGTH} characters, any"),
 ]
 Key = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{32}$"), Field(examples=[ID])]
 
@@ -49,7 +50,7 @@ class AuthInfo(BaseModel):
 
 class SignInRequest(Request):
     email: str = Field(max_length=254, examples=["ada@example.org"])
-    password: str = Field(max_length=MAX_PASSWORD)
+    password: str = Field(max_length=MAX_LENGTH)
 
 
 class SignOutRequest(Request):
@@ -101,7 +102,7 @@ class MeChange(Request):
 
 
 class PasswordChange(Request):
-    old: str = Field(max_length=MAX_PASSWORD)
+    old: str = Field(max_length=MAX_LENGTH)
     new: Password
 
 

@@ -13,7 +13,8 @@ import httpx
 from frontend.errors import ApiError, unreachable
 
 API = "/api/v1"  # what the browser calls too, on the same origin
-FORWARDED = ("cookie", "authorization", "accept-language")  # not Origin: the service judged it when the page called
+FORWARDED = ("cookie", "x-csrf-token", "authorization", "accept-language")
+# not Origin: the service judged it when the page called, and says so to us by the token (cli/serve.py)
 YAML = {"content-type": "application/yaml"}
 
 

@@ -8,6 +8,7 @@ from functools import cache
 from pwdlib import PasswordHash
 from pwdlib.exceptions import UnknownHashError
 
+MIN_LENGTH, MAX_LENGTH = 10, 200
 AT_ONCE = threading.BoundedSemaphore(2)
 """Each hash takes 64 MB for some 50 ms: more at a time would take the machine's memory and gain nothing."""
 

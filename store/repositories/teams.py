@@ -44,8 +44,13 @@ class TeamRepository:
 
     def of(self, user_id: str | None) -> Sequence[Any]:
         """(Team, role, members, projects) of one's teams; of all, with the role of an owner, where nobody signs in."""
-        members = select(func.count()).where(Membership.team_id == Team.id).scalar_subquery()
-        projects = select(func.count()).where(Project.team_id == Team.id).scalar_subquery()
+        members = (
+            select(func.count(Membership.user_id))
+            .where(Membership.team_id == Team.id)
+            .correlate(Team)
+            .scalar_subquery()
+        )
+        projects = select(func.count(Project.id)).where(Project.team_id == Team.id).correlate(Team).scalar_subquery()
         if user_id is None:
             return [(*row[:1], OWNER, *row[1:]) for row in self.session.execute(select(Team, members, projects))]
         query = select(Team, Membership.role, members, projects).join(Membership, Membership.team_id == Team.id)

@@ -13,6 +13,8 @@ COMMANDS = {
     "serve": ("cli.serve", "start the service: REST, pages and workers together"),
     "worker": ("cli.worker", "start one worker, for a service on several processes or machines"),
     "demo": ("cli.demo", "start the service, run the FPSO example and show its results"),
+    "user": ("cli.user", "accounts: add, list, disable, reset-password"),
+    "key": ("cli.key", "API keys: add, list, revoke"),
     "migrate": ("cli.migrate", "bring the database to this version's schema"),
 }
 HIDDEN = {"api": "cli.api"}

@@ -20,7 +20,21 @@ from .attempts import Attempts
 from .context import Context
 from .doorkeeper import Doorkeeper
 from .guard import Guard
-from .routes import auth, cases, catalogue, data_sets, events, health, moordyn, runs, shares, studies, teams, users
+from .routes import (
+    auth,
+    cases,
+    catalogue,
+    data_sets,
+    events,
+    exports,
+    health,
+    moordyn,
+    runs,
+    shares,
+    studies,
+    teams,
+    users,
+)
 from .routes.common import problems
 
 BASE = "/api/v1"
@@ -65,7 +79,7 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
     app.add_middleware(GZipMiddleware, minimum_size=2000, compresslevel=5)
     app.include_router(health.router)
     base = APIRouter(prefix=BASE, responses=problems(400, 401, 403, 404, 413, 422), dependencies=[Depends(admit)])
-    for module in (auth, cases, catalogue, data_sets, events, moordyn, runs, shares, studies, teams, users):
+    for module in (auth, cases, catalogue, data_sets, events, exports, moordyn, runs, shares, studies, teams, users):
         base.include_router(module.router)
     base.include_router(shares.opened)
     app.include_router(base)

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from datetime import UTC, datetime
-from typing import IO, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Query, Response
-from fastapi.responses import StreamingResponse
 
 from store.filters import RunFilter
 from store.repositories import ChannelRepository, RunRepository
@@ -17,7 +15,7 @@ from ..bodies import RunRequestDep
 from ..context import ContextDep, ScopeDep
 from ..idempotency import OnceDep
 from ..schemas import ChannelPage, ChannelValues, RunCase, RunChange, RunInfo, RunPage, RunRequest
-from ..services import channels, export
+from ..services import channels
 from ..services import runs as service
 from .common import CASE_BYTES, Cursor, Key, Limit, StatesQuery, problems, states_of
 
@@ -156,21 +154,3 @@ def get_channel(
         channel = ChannelRepository(session).get(run.id, name)
     shown = channels.look(channel, channels.View(start, stop, points, seed, arc_length))
     return Response(json.dumps(shown, allow_nan=False, separators=(",", ":")), media_type="application/json")
-
-
-@router.get(
-    "/{run_id}/export",
-    responses={200: {"content": {"application/zip": {}}}, **problems(404, 409)},
-    response_class=StreamingResponse,
-)
-def export_run(context: ContextDep, scope: ScopeDep, run_id: Key) -> StreamingResponse:
-    """run.json, summary.json, case.yaml and channels.npz in one ZIP."""
-    archive = export.archive(context, scope, run_id)
-    headers = {"Content-Disposition": f'attachment; filename="slowdrift-{run_id[:32]}.zip"'}
-    return StreamingResponse(_pieces(archive), media_type="application/zip", headers=headers)
-
-
-def _pieces(file: IO[bytes]) -> Iterator[bytes]:
-    with file:
-        while piece := file.read(256 * 1024):
-            yield piece

@@ -53,6 +53,50 @@ class DataSetInfo(BaseModel):
     created_at: datetime = Field(examples=[TIME])
 
 
+class QualityCheck(BaseModel):
+    """One check of hydrodynamic data: `message` says value, threshold and remedy."""
+
+    name: str = Field(examples=["reciprocity"])
+    state: Literal["ok", "warning", "skipped"]
+    message: str
+    value: float | None
+    threshold: float | None
+
+
+class DataSetDetail(DataSetInfo):
+    checks: list[QualityCheck]
+
+
+class Series(BaseModel):
+    """One curve of hydrodynamic data; `imaginary` beside the real `values` of a complex one."""
+
+    i: int
+    j: int | None = None
+    heading_deg: float | None = None
+    values: list[Any]
+    imaginary: list[Any] | None = None
+    zero: float | None = Field(None, description="the limit at zero frequency")
+    infinite: float | None = Field(None, description="the limit at infinite frequency")
+
+
+class Coefficients(BaseModel):
+    """Hydrodynamic data to draw: over `omega` [rad/s], or over `time` [s]."""
+
+    quantity: str
+    unit: str = Field(description="of forces, of couplings with moments, of moments")
+    omega: list[float] | None = None
+    time: list[float] | None = None
+    series: list[Series]
+
+
+class Stiffness(BaseModel):
+    """Hydrostatic stiffness about `reference_point`, with the weight of the computation at `centre_of_mass`."""
+
+    hydrostatic_stiffness: list[list[float]] | None
+    reference_point: list[float] | None
+    centre_of_mass: list[float] | None
+
+
 class DataSetPage(BaseModel):
     items: list[DataSetInfo]
     next_cursor: str | None

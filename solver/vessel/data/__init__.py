@@ -2,6 +2,16 @@
 
 from .hydrodynamics import HydrodynamicData
 from .qtf import QTF
-from .source import MAX_BYTES, DataSource, FileSource, open_for, read_bytes, read_files
+from .source import MAX_BYTES, DataSource, FileSource, open_for, read_bytes, read_files, unpacked
 
-__all__ = ["MAX_BYTES", "QTF", "DataSource", "FileSource", "HydrodynamicData", "open_for", "read_bytes", "read_files"]
+__all__ = [
+    "MAX_BYTES",
+    "QTF",
+    "DataSource",
+    "FileSource",
+    "HydrodynamicData",
+    "open_for",
+    "read_bytes",
+    "read_files",
+    "unpacked",
+]

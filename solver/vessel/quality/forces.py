@@ -139,8 +139,8 @@ def _excitation_spacing(data: HydrodynamicData) -> Check:
     value, w, h, mode = worst
     step = float(data.omega[min(w + 1, data.omega.size - 1)] - data.omega[w - 1]) / 2
     text = (
-        f"the wave force of {pair(mode, mode)} at heading {np.degrees(data.headings[h]):.4g} deg bends by {percent(value)} of its "
-        f"peak within one step of {step:.3g} rad/s near {data.omega[w]:.4g} rad/s (threshold {percent(ROUGH)})"
+        f"the wave force of {pair(mode, mode)} at heading {np.degrees(data.headings[h]):.4g} deg bends by {percent(value)} of "
+        f"its peak within one step of {step:.3g} rad/s near {data.omega[w]:.4g} rad/s (threshold {percent(ROUGH)})"
     )
     bad = f"{data.name}: {text}; forces between frequencies are linear: compute finer steps there"
     return judge(name, value, ROUGH, f"{data.name}: {text}", bad)

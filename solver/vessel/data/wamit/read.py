@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -55,7 +55,13 @@ def read_wamit(files: Mapping[str, bytes], options: WamitFiles) -> HydrodynamicD
 
     options : what files cannot say; density and gravity must be given. Raises DataError, naming file and line.
     """
-    found = _Set(_by_kind(files), options, _scale(options, files), [], [])
+    kinds = _by_kind(files)
+    missing = lacking(kinds, options)
+    if missing:
+        raise DataError(
+            f"{_names(files)}: {missing[0][1]} (vessel.hydrodynamics.wamit.{missing[0][0]}, or with the upload)"
+        )
+    found = _Set(kinds, options, _scale(options), [], [])
     radiation_table, force_kind = found.table(".1", RADIATION, 1), found.first(".3", ".2")
     if radiation_table is None or force_kind is None:
         raise DataError(
@@ -114,19 +120,31 @@ def _by_kind(files: Mapping[str, bytes]) -> dict[str, tuple[str, bytes]]:
     return result
 
 
-def _scale(options: WamitFiles, files: Mapping[str, bytes]) -> Scale:
-    dimensional = options.values == "dimensional"
-    if options.length is None and not dimensional:
-        raise DataError(
-            f"{_names(files)}: WAMIT's files hold values made dimensionless by a length ULEN that they do not say; "
-            f"give length (vessel.hydrodynamics.wamit.length, or with the upload), or values: dimensional"
-        )
+def lacking(kinds: Collection[str], options: WamitFiles) -> list[tuple[str, str]]:
+    """What must still be said of files of these kinds: names of fields of WamitFiles, each with a sentence."""
+    missing = []
+    if options.length is None and options.values != "dimensional":
+        missing.append((
+            "length", "WAMIT's values are made dimensionless by a length ULEN that the files do not say; give length, or "
+            "values: dimensional",
+        ))  # fmt: skip
     for field, value in (("density", options.density), ("gravity", options.gravity)):
         if value is None:
-            raise DataError(f"{_names(files)}: the files do not say the {field} of the computation; give {field}")
+            missing.append((field, f"the files do not say the {field} of the computation; give {field}"))
+    if ".hst" in kinds and options.centre_of_mass is None:
+        missing.append((
+            "centre_of_mass", "the stiffness (.hst) contains the weight at the centre of gravity of the computation, which "
+            "the file does not say; give centre_of_mass (the reference point when gravity was left out)",
+        ))  # fmt: skip
+    return missing
+
+
+def _scale(options: WamitFiles) -> Scale:
     assert options.density is not None
     assert options.gravity is not None
-    return Scale(float(options.length or 1.0), float(options.density), float(options.gravity), dimensional)
+    return Scale(
+        float(options.length or 1.0), float(options.density), float(options.gravity), options.values == "dimensional"
+    )
 
 
 def _periods(found: _Set, radiation: Table, force: Table) -> bool:
@@ -210,12 +228,7 @@ def _centre(found: _Set) -> Array | None:
     if ".hst" not in found.files:
         return None
     centre = found.options.centre_of_mass
-    if centre is None:
-        raise DataError(
-            f"{found.files['.hst'][0]}: the stiffness contains the weight at the centre of gravity of the computation, "
-            f"which the file does not say; give centre_of_mass (the reference point when gravity was left out)"
-        )
-    return np.array(centre, dtype=float)
+    return None if centre is None else np.array(centre, dtype=float)
 
 
 def _motions(found: _Set, periods: bool, radiation: Radiation, headings: Array) -> Array | None:

@@ -5,12 +5,14 @@
 
 from __future__ import annotations
 
+import logging
 from typing import Any
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi_problem.error import Problem, StatusProblem
 from fastapi_problem.handler import ExceptionHandler, add_exception_handler, new_exception_handler
+from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
 
 from solver.outcome import CaseError, DataError, FieldError, NotConverged, SlowdriftError
 from store.errors import (
@@ -23,6 +25,7 @@ from store.errors import (
     UnavailableError,
 )
 
+log = logging.getLogger(__name__)
 DATA = ("vessel", "hydrodynamics", "data")
 
 
@@ -61,6 +64,12 @@ def _request(_: ExceptionHandler, __: Request, error: RequestValidationError) ->
     return field_problem(faults, "The request is not valid.", "request-invalid")
 
 
+def _away(_: ExceptionHandler, __: Request, error: DBAPIError) -> Problem:
+    log.warning("The database did not answer a request: %s", error)
+    detail = "The database cannot be reached or written to now; nothing was changed. Try again in a moment."
+    return Problem("A part of the service is not available.", type_="unavailable", detail=detail, status=503)
+
+
 def _status(status: int, kind: str, title: str) -> Any:
     def handle(_: ExceptionHandler, __: Request, error: SlowdriftError) -> Problem:
         return Problem(title, type_=kind, detail=str(error), status=status)
@@ -89,6 +98,8 @@ def install(app: FastAPI) -> None:
         TooManyError: _too_many,
         ConflictError: _status(409, "conflict", "The present state does not allow this."),
         TooSlowError: _status(504, "too-slow", "The answer did not come in time."),
+        OperationalError: _away,
+        InterfaceError: _away,
         UnavailableError: _status(503, "unavailable", "A part of the service is not available."),
     }
     handler = new_exception_handler(

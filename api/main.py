@@ -6,8 +6,8 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
 from fastapi import APIRouter, Depends, FastAPI
-from starlette.middleware.gzip import GZipMiddleware
 from starlette.types import ASGIApp
+from starlette_compress import CompressMiddleware
 
 from store.database import Database
 from store.doorbell import Doorbell
@@ -19,7 +19,10 @@ from .access import admit
 from .attempts import Attempts
 from .context import Context
 from .doorkeeper import Doorkeeper
+from .etag import ETags
 from .guard import Guard
+from .metrics import Meter, Metrics
+from .rates import Rates
 from .routes import (
     auth,
     cases,
@@ -28,6 +31,7 @@ from .routes import (
     events,
     exports,
     health,
+    imports,
     moordyn,
     runs,
     shares,
@@ -45,7 +49,8 @@ class Guarded(FastAPI):
 
     def build_middleware_stack(self) -> ASGIApp:
         context: Context = self.state.context
-        return Guard(Doorkeeper(super().build_middleware_stack(), context, BASE), context.settings.hosts)
+        inner = Doorkeeper(super().build_middleware_stack(), context, BASE)
+        return Meter(Guard(inner, context.settings.hosts), self.state.metrics)
 
 
 def create_app(settings: Settings | None = None, reconcile: bool = True) -> FastAPI:
@@ -76,10 +81,27 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
     app.state.context = context
     app.state.attempts = Attempts(settings)
     errors.install(app)
-    app.add_middleware(GZipMiddleware, minimum_size=2000, compresslevel=5)
+    app.state.metrics = Metrics(context.database)
+    app.add_middleware(ETags)
+    app.add_middleware(CompressMiddleware, minimum_size=2000, zstd_level=3, brotli=False, gzip_level=5)
+    app.add_middleware(Rates, per_minute=settings.rate_per_minute)
     app.include_router(health.router)
     base = APIRouter(prefix=BASE, responses=problems(400, 401, 403, 404, 413, 422), dependencies=[Depends(admit)])
-    for module in (auth, cases, catalogue, data_sets, events, exports, moordyn, runs, shares, studies, teams, users):
+    for module in (
+        auth,
+        cases,
+        catalogue,
+        data_sets,
+        events,
+        exports,
+        imports,
+        moordyn,
+        runs,
+        shares,
+        studies,
+        teams,
+        users,
+    ):
         base.include_router(module.router)
     base.include_router(shares.opened)
     app.include_router(base)

@@ -65,5 +65,5 @@ class QueueClass(BaseModel):
 
 class QueueInfo(BaseModel):
     items: list[QueueClass]
-    workers: list[str] = Field(description="host/process of what is at work")
+    busy_workers: int = Field(description="processes with a task in hand")
     seconds_left: float | None = Field(description="estimate of the seconds until all that waits is done")

@@ -15,6 +15,10 @@ COMMANDS = {
     "demo": ("cli.demo", "start the service, run the FPSO example and show its results"),
     "user": ("cli.user", "accounts: add, list, disable, reset-password"),
     "key": ("cli.key", "API keys: add, list, revoke"),
+    "queue": ("cli.queue", "what waits, what is at work, what failed and why"),
+    "retention": ("cli.retention", "delete ended runs older than so many days; pinned ones stay"),
+    "backup": ("cli.backup", "save the database into one file, while the service runs"),
+    "restore": ("cli.restore", "put a saved database back"),
     "migrate": ("cli.migrate", "bring the database to this version's schema"),
 }
 HIDDEN = {"api": "cli.api"}

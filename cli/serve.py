@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import os
 from dataclasses import dataclass
 from typing import Any
@@ -113,6 +114,8 @@ def _children(options: argparse.Namespace, descriptor: int, port: int) -> list[C
     if options.workers > 0:
         children.append(Child("worker", ["worker", "--concurrency", str(options.workers)]))
         children.append(Child("interactive", ["worker", "--queue", "interactive"]))
+        if importlib.util.find_spec("capytaine"):  # hydrodynamic jobs take long: in a process of their own
+            children.append(Child("hydrodynamics", ["worker", "--queue", "hydrodynamics"]))
     return children
 
 

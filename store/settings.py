@@ -58,6 +58,8 @@ class Settings(BaseModel):
     """Largest request body, data sets apart."""
     max_data_bytes: int = Field(64_000_000, ge=1000)
     """Largest data set."""
+    max_bundle_bytes: int = Field(256_000_000, ge=1000)
+    """Largest file of a run that is imported."""
     allowed_hosts: str = ""
     """Host names the API answers to beside this machine's own, with commas; * for any."""
     accounts: Literal["auto", "on"] = "auto"
@@ -68,6 +70,12 @@ class Settings(BaseModel):
     """How long one stays signed in."""
     public_url: str = Field("", pattern=r"^(https?://[^/]+)?/?$")
     """Where people reach the service, for links and secure cookies; empty: as the request came in."""
+    rate_per_minute: int = Field(6000, ge=0)
+    """Requests of one key, session or (of strangers) address in a minute; 0: any number."""
+    retention_days: float = Field(0.0, ge=0)
+    """Ended runs older than this are deleted unless they are pinned; 0: none ever."""
+    metrics_token: str = Field("", repr=False)
+    """What /metrics wants as `Authorization: Bearer …`; empty: it answers this machine only."""
     log_level: str = "INFO"
     """Level of the service's logs."""
     log_json: bool = False

@@ -13,6 +13,7 @@ from typing import IO, Any
 
 from fastapi.exceptions import RequestValidationError
 
+from store.errors import UnavailableError
 from store.models import Study
 from store.repositories import StudyRepository
 from store.repositories.studies import Row
@@ -68,9 +69,11 @@ def as_csv(context: Context, scope: Scope, study_id: str, columns: str | None) -
 
 def as_parquet(context: Context, scope: Scope, study_id: str, columns: str | None) -> IO[bytes]:
     """As `as_csv`; a column is of numbers where all its cells are, else of texts."""
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
+    try:
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+    except ImportError:
+        raise UnavailableError("Parquet needs pyarrow on the server: pip install 'slowdrift[parquet]'.") from None
     names, *rows = _whole(context, scope, study_id, columns)
     arrays = [_array(pa, [row[index] for row in rows]) for index in range(len(names))]
     spool = _spool()

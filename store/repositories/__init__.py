@@ -5,6 +5,7 @@ from .channels import ChannelRepository
 from .data_sets import DataSetRepository
 from .idempotency import IdempotencyRepository
 from .previews import PreviewRepository
+from .queues import QueueRepository
 from .recovery import RecoveryRepository
 from .runs import RunRepository
 from .studies import StudyRepository
@@ -16,6 +17,7 @@ __all__ = [
     "DataSetRepository",
     "IdempotencyRepository",
     "PreviewRepository",
+    "QueueRepository",
     "RecoveryRepository",
     "RunRepository",
     "StudyRepository",

@@ -13,10 +13,9 @@ from ..case.environment import RegularWave
 from ..case.vessel import Hydrodynamics
 from ..outcome import CaseError, DataError, FieldError
 from .data import HydrodynamicData
+from .data.interpolate import PRINTED
 from .quality import quality_warnings
 from .rigid import about_cg
-
-ROUND_OFF = 1e-9
 
 
 def fit(case: Case, data: HydrodynamicData) -> tuple[str, ...]:
@@ -47,19 +46,19 @@ def _band(case: Case) -> tuple[float, float]:
 def _frequencies(case: Case, choice: Hydrodynamics, data: HydrodynamicData) -> Iterator[FieldError]:
     top, fd = float(data.omega[-1]), case.analyses.frequency_domain
     lowest = 0.0 if data.added_mass_zero is not None else float(data.omega[0])
-    if fd is not None and case.environment.random and fd.wave.to > top * (1 + ROUND_OFF):
+    if fd is not None and case.environment.random and fd.wave.to > top * (1 + PRINTED):
         yield FieldError(
             ("analyses", "frequency_domain", "wave", "to"),
             f"{fd.wave.to:g} rad/s is above the hydrodynamic data; allowed: ≤ {top:g}", f"{fd.wave.to:g}",
         )  # fmt: skip
-    if choice.frequency is not None and not lowest <= choice.frequency <= top:
+    if choice.frequency is not None and not lowest * (1 - PRINTED) <= choice.frequency <= top * (1 + PRINTED):
         yield FieldError(
             ("vessel", "hydrodynamics", "frequency"),
             f"{choice.frequency:g} rad/s is outside the hydrodynamic data; allowed: {lowest:g} to {top:g}",
             f"{choice.frequency:g}",
         )  # fmt: skip
     for loc, omega in harmonic_frequencies(case):
-        if not lowest <= omega <= top:
+        if not lowest * (1 - PRINTED) <= omega <= top * (1 + PRINTED):
             longest = f"{2 * math.pi / lowest:.4g}" if lowest > 0 else "any"
             yield FieldError(
                 loc, f"{2 * math.pi / omega:g} s is outside the hydrodynamic data; "
@@ -87,12 +86,12 @@ def _pairs(case: Case, choice: Hydrodynamics, data: HydrodynamicData, high: floa
     if choice.drift != "qtf" or qtf is None or not case.environment.random:
         return
     fd = case.analyses.frequency_domain or FrequencyDomain()
-    if high > qtf.omega[-1] * (1 + 1e-4):
+    if high > qtf.omega[-1] * (1 + PRINTED):
         yield FieldError(
             ("analyses", "frequency_domain", "wave", "to"),
             f"{high:g} rad/s is above the QTF; allowed: ≤ {qtf.omega[-1]:.5g}, or another drift", f"{high:g}",
         )  # fmt: skip
-    if fd.low.to > qtf.reach * (1 + 1e-4):
+    if fd.low.to > qtf.reach * (1 + PRINTED):
         yield FieldError(
             ("analyses", "frequency_domain", "low", "to"),
             f"{fd.low.to:g} rad/s is above the differences for which the QTF was computed; allowed: ≤ {qtf.reach:.5g}",
@@ -121,7 +120,7 @@ def _directions(case: Case, choice: Hydrodynamics, data: HydrodynamicData, low: 
 
 def _below_the_pairs(case: Case, choice: Hydrodynamics, data: HydrodynamicData, low: float) -> Iterator[str]:
     qtf = data.qtf
-    if choice.drift == "qtf" and qtf is not None and case.environment.random and low < qtf.omega[0] * (1 - 1e-4):
+    if choice.drift == "qtf" and qtf is not None and case.environment.random and low < qtf.omega[0] * (1 - PRINTED):
         yield (
             f"{qtf.name}: the QTF begins at {qtf.omega[0]:.4g} rad/s, the waves at {low:.4g} rad/s; in between it goes "
             f"linearly to zero at omega = 0; compute lower frequencies or raise analyses.frequency_domain.wave.from"

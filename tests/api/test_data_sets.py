@@ -75,7 +75,8 @@ def test_checks_and_arrays(client, made):
 @pytest.mark.parametrize(
     ("asked", "field"),
     [
-        ({"quantity": "qtf"}, "i"), ({"quantity": "excitation", "heading": 225, "i": 0}, ""), ({"quantity": "mass"}, "quantity"),
+        ({"quantity": "qtf"}, "i"), ({"quantity": "excitation", "heading": 225, "i": 0}, ""),
+        ({"quantity": "mass"}, "quantity"),
         ({"quantity": "added_mass", "i": 6}, "i"), ({"quantity": "qtf", "i": 0, "heading": 60}, "heading"),
     ],
 )  # fmt: skip

@@ -82,6 +82,7 @@ class QTF:
         m, n = (np.broadcast_to(np.asarray(part, float), shape).ravel() for part in (omega_m, omega_n))
         for part in (m, n):
             check_range(part, 0.0, float(self.omega[-1]), self.name, "the QTF")
+        m, n = np.minimum(m, self.omega[-1]), np.minimum(n, self.omega[-1])
         if heading_n is None or abs(heading_n - heading) < 1e-9:
             i, j, w = heading_weights(self.headings, heading, self.name)
             table = self.values[i] if w == 0.0 else (1.0 - w) * self.values[i] + w * self.values[j]

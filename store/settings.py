@@ -48,6 +48,8 @@ class Settings(BaseModel):
     """A worker process above this is replaced after its task."""
     task_memory_mb: int = Field(4000, ge=100)
     """A task that needs more is ended, and its run fails with that reason."""
+    bem_memory_mb: int = Field(3000, ge=100)
+    """A hydrodynamic job that would need more is refused; keep it below task_memory_mb."""
     task_timeout_seconds: float = Field(900.0, gt=0)
     """A task may take so long, or timeout_factor times its estimate if that is more."""
     timeout_factor: float = Field(20.0, ge=1)

@@ -25,9 +25,11 @@ from store.estimate import snapshot
 from store.logs import about
 from store.models import FAILED, SUCCEEDED
 from store.repositories import ChannelRepository, TaskRepository
+from store.repositories.hydrodynamics import Assignment, HydrodynamicTasks
 from store.repositories.tasks import Job, Outcome, Ticket
 from store.settings import Settings
 
+from . import hydrodynamics
 from .keeper import Exceeded, Keeper, Limits, Lost, Released
 
 log = logging.getLogger(__name__)
@@ -134,7 +136,11 @@ def _attempt(worker: Worker, ticket: Ticket, keeper: Keeper) -> str:
 
 def _compute(worker: Worker, ticket: Ticket, keeper: Keeper) -> str:
     with worker.database.read() as session:
-        job = TaskRepository(session).job(ticket)
+        assignment = HydrodynamicTasks(session).assignment(ticket)
+        if assignment is None:
+            job = TaskRepository(session).job(ticket)
+    if assignment is not None:
+        return _hydrodynamics(worker, ticket, keeper, assignment)
     case = stored_case(job.canonical, job.analyses, job.overrides)
     if job.part is None:
         part = worker.solver.run_chunk(case, job.data, job.chunk, job.checkpoint, keeper.on_progress)
@@ -157,6 +163,18 @@ def _compute(worker: Worker, ticket: Ticket, keeper: Keeper) -> str:
         return True
 
     return outcome.state if _persist(worker, complete) else "cancelled"
+
+
+def _hydrodynamics(worker: Worker, ticket: Ticket, keeper: Keeper, assignment: Assignment) -> str:
+    name, made, summary, warnings = hydrodynamics.compute(assignment, worker.settings.data_dir, keeper.on_progress)
+    text = to_json({hydrodynamics.ANALYSIS: summary | {"data_set": made.summary}})
+    outcome = Outcome(SUCCEEDED, None, {hydrodynamics.ANALYSIS: SUCCEEDED}, text, warnings, solver_version() or "unknown")
+    keeper.writing = True
+
+    def complete(session: Session) -> bool:
+        return HydrodynamicTasks(session).complete(ticket, outcome, name, made)
+
+    return SUCCEEDED if _persist(worker, complete) else "cancelled"
 
 
 def _parts(worker: Worker, ticket: Ticket) -> list[Part]:

@@ -25,6 +25,7 @@ from .symmetry import fundamental
 Array = np.ndarray
 LID_FACTOR = 1.5
 BASE_MB = 250.0  # of a process with Capytaine and its tables, before any matrix
+ENTRY_SECONDS, FINITE_DEPTH, FLOPS = 4.5e-7, 4.0, 5e9  # of a Green function in deep water; dearer in finite depth
 BALANCE = 0.1  # of the scattered power: beyond it, energy is out of balance by more than a mesh should be
 
 
@@ -37,9 +38,11 @@ class Estimate:
     symmetry_planes: int
     memory_mb: float
     solutions: int
+    seconds: float
+    """Roughly, on one core."""
 
     def as_dict(self) -> dict[str, Any]:
-        return {**vars(self), "memory_mb": round(self.memory_mb)}
+        return {**vars(self), "memory_mb": round(self.memory_mb), "seconds": float(f"{self.seconds:.2g}")}
 
 
 @dataclass(frozen=True)
@@ -70,7 +73,10 @@ def estimate(job: HydrodynamicJob, shape: Wet) -> Estimate:
     solutions = job.omega().size * (6 + headings) + (12 if job.limits else 0)
     memory = BASE_MB + 16.0 * n**2 * (2 * copies + 3) / 2**20
     lid = 0 if shape.lid is None else shape.lid.count * copies
-    return Estimate(shape.hull.count * copies, lid, len(shape.planes), memory, solutions)
+    matrices = job.omega().size + (2 if job.limits else 0)
+    entry = ENTRY_SECONDS * (1 if math.isinf(shape.depth) else FINITE_DEPTH)
+    seconds = matrices * copies * (n**2 * entry + 8 / 3 * n**3 / FLOPS)
+    return Estimate(shape.hull.count * copies, lid, len(shape.planes), memory, solutions, seconds)
 
 
 def check(job: HydrodynamicJob, hull: Hull, shape: Wet, memory_mb: float) -> None:

@@ -86,7 +86,9 @@ class RunRepository(Scoped):
         run.identity = identity(old.content_hash, old.data_hash, old.analyses)
         return self._queue(run, chunks, None)
 
-    def _queue(self, run: Run, chunks: Sequence[Chunk], priority: int | None) -> tuple[Run, list[tuple[str, str]]]:
+    def _queue(
+        self, run: Run, chunks: Sequence[Chunk], priority: int | None, queue: str = RUNS
+    ) -> tuple[Run, list[tuple[str, str]]]:
         if not chunks:
             raise ValueError("a run needs at least one chunk")
         priority = by_size(chunk.weight for chunk in chunks) if priority is None else priority
@@ -99,6 +101,7 @@ class RunRepository(Scoped):
                 number=number,
                 chunk=chunk.as_dict(),
                 weight=chunk.weight,
+                queue=queue,
                 priority=priority,
                 rung_at=now,
             )
@@ -106,7 +109,7 @@ class RunRepository(Scoped):
         ]
         self.session.add_all(tasks)
         self.session.flush()
-        return run, [(task.id, door) for task in tasks for door in doors(RUNS, priority)]
+        return run, [(task.id, door) for task in tasks for door in doors(queue, priority)]
 
     def identical(self, same: str | None) -> Run | None:
         """The newest succeeded run with this identity."""

@@ -53,6 +53,10 @@ class Guard:
                 headers = MutableHeaders(scope=message)
                 for name, value in HEADERS.items():
                     headers.setdefault(name, value)
+                if scope["path"].startswith("/api/"):  # a browser may be somebody else's tomorrow: ask again each time
+                    headers.setdefault("Cache-Control", "private, no-cache")
+                    headers.add_vary_header("Cookie")
+                    headers.add_vary_header("Authorization")
                 if message["status"] == 413 and headers.get("content-type") != PROBLEM:
                     headers["content-type"] = PROBLEM  # the framework's own is bare text
                     headers["content-length"] = str(len(TOO_LARGE))

@@ -53,11 +53,11 @@ class Drift:
         if self.kind == "qtf":
             qtf = self.data.qtf
             assert qtf is not None
-            first, second = direction_m - self.yaw, direction_n - self.yaw
-            if direction_n == direction_m or qtf.knows(first, second):
-                values = qtf.at(omega_m, omega_n, first, second)
+            heading_m, heading_n = direction_m - self.yaw, direction_n - self.yaw
+            if direction_n == direction_m or qtf.knows(heading_m, heading_n):
+                values = qtf.at(omega_m, omega_n, heading_m, heading_n)
             else:
-                values = 0.5 * (qtf.at(omega_m, omega_n, first) + qtf.at(omega_m, omega_n, second))
+                values = 0.5 * (qtf.at(omega_m, omega_n, heading_m) + qtf.at(omega_m, omega_n, heading_n))
             return turned_force(values, self.yaw)
         first = self.data.mean_drift_at(omega_m, direction_m - self.yaw)
         second = self.data.mean_drift_at(omega_n, direction_n - self.yaw)

@@ -6,21 +6,25 @@ The file is in the time factor e^{-i omega t}; excitation is conjugated here, on
 from __future__ import annotations
 
 import hashlib
+import json
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ...outcome import DataError
 from .hydrodynamics import HydrodynamicData
 from .interpolate import TURN
+from .layout import EXTRA, PROVENANCE, read_drift, read_qtf
 from .netcdf import Dataset, dof_order, numbers, open_netcdf, require, scalar, take, vector3
 
 Array = np.ndarray
 MAX_OMEGA, MAX_HEADINGS = 5000, 721
+MAX_TOLD = 1_000_000  # characters of provenance
 VARIABLES = (  # all that is read of a file
     "omega", "wave_direction", "radiating_dof", "influenced_dof", "complex", "added_mass", "radiation_damping",
-    "Froude_Krylov_force", "diffraction_force", "excitation_force", "mean_drift_force", "hydrostatic_stiffness",
+    "Froude_Krylov_force", "diffraction_force", "excitation_force", "hydrostatic_stiffness", *EXTRA, PROVENANCE,
     "rotation_center", "center_of_mass", "center_of_buoyancy", "disp_volume", "disp_mass", "rho", "g", "water_depth",
     "forward_speed",
 )  # fmt: skip
@@ -60,6 +64,7 @@ def read_capytaine(payload: bytes, name: str) -> HydrodynamicData:
     damping, _, _ = _radiation(dataset, "radiation_damping", layout)
     excitation, excitation_zero = _excitation(dataset, layout)
     density, gravity, depth = _water(dataset, name, warnings)
+    own, content_hash = read_drift(dataset, name), hashlib.sha256(payload).hexdigest()
     rotation_centre = vector3(dataset, "rotation_center", name)
     stiffness = take(dataset, "hydrostatic_stiffness", ("influenced_dof", "radiating_dof"), name)
     if stiffness is not None:
@@ -70,7 +75,7 @@ def read_capytaine(payload: bytes, name: str) -> HydrodynamicData:
         )
     return HydrodynamicData(
         name=name,
-        content_hash=hashlib.sha256(payload).hexdigest(),
+        content_hash=content_hash,
         omega=layout.omega[layout.finite],
         headings=layout.headings,
         added_mass=added_mass,
@@ -79,7 +84,13 @@ def read_capytaine(payload: bytes, name: str) -> HydrodynamicData:
         added_mass_zero=zero,
         added_mass_infinite=infinite,
         excitation_zero=excitation_zero,
-        mean_drift=_mean_drift(dataset, layout),
+        mean_drift=_mean_drift(dataset, layout)
+        if own is None
+        else _finite(own[2][..., layout.influenced], "mean_drift_force", name),
+        mean_drift_omega=None if own is None else own[0],
+        mean_drift_headings=None if own is None else own[1],
+        motions=_motions(dataset, layout),
+        qtf=read_qtf(dataset, layout.influenced, name),
         hydrostatic_stiffness=stiffness,
         displaced_volume=_volume(dataset, name, density),
         centre_of_buoyancy=vector3(dataset, "center_of_buoyancy", name),
@@ -90,7 +101,26 @@ def read_capytaine(payload: bytes, name: str) -> HydrodynamicData:
         gravity=gravity,
         depth=depth,
         warnings=tuple(warnings),
+        provenance=_provenance(dataset, payload, content_hash, name),
     )
+
+
+def _provenance(dataset: Dataset, payload: bytes, content_hash: str, name: str) -> dict[str, Any]:
+    """Of the file, and `source`: what a file that this program wrote says of where its numbers came from."""
+    told = (dataset[PROVENANCE].labels or ("",))[0] if PROVENANCE in dataset else ""
+    try:
+        source = json.loads(told) if told and len(told) < MAX_TOLD else None
+    except (ValueError, RecursionError):
+        source = None
+    files = [{"name": name, "bytes": len(payload), "sha256": content_hash, "used": True}]
+    made = {
+        "format": "NetCDF",
+        "files": files,
+        "not_read": [],
+        "conventions": {"time_factor": "e^{-iωt}"},
+        "assumed": [],
+    }
+    return made | ({"source": source} if isinstance(source, dict) and source else {})
 
 
 def _layout(dataset: Dataset, name: str) -> _Layout:
@@ -174,6 +204,14 @@ def _mean_drift(dataset: Dataset, layout: _Layout) -> Array | None:
         return None
     values = values[layout.finite][:, layout.turn][:, :, layout.influenced].real
     return _finite(values, "mean_drift_force", layout.name)
+
+
+def _motions(dataset: Dataset, layout: _Layout) -> Array | None:
+    values = take(dataset, "RAO", (layout.dim, "wave_direction", "radiating_dof"), layout.name)
+    if values is None or not np.iscomplexobj(values):
+        return None
+    values = np.conj(values[layout.finite][:, layout.turn][:, :, layout.radiating])
+    return values if np.all(np.isfinite(values)) else None
 
 
 def _water(dataset: Dataset, name: str, warnings: list[str]) -> tuple[float, float, float]:

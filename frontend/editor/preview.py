@@ -11,7 +11,7 @@ from dash import Dash, Input, Output, dcc, html
 from frontend.components.attributes import hyphened
 from frontend.components.graph import figure_graph
 from frontend.components.tables import table
-from frontend.editor.text import EditError
+from frontend.editor.text import EditError, read
 from frontend.figures import preview as figures
 from frontend.figures.sea import sea_figure
 from frontend.format import MISSING, number
@@ -53,7 +53,7 @@ def register(app: Dash) -> None:
 
 def show(held: dict[str, Any] | None, view: str) -> tuple[Any, str, Any]:
     """One picture at a time, so that an edit is on the screen within a second."""
-    tree = (held or {}).get("tree") or {}
+    tree = _tree((held or {}).get("text") or "")
     seas = (tree.get("environment") or {}).get("seastates") or []
     if view == "sea":
         return (*_sea(seas), None)
@@ -66,6 +66,14 @@ def show(held: dict[str, Any] | None, view: str) -> tuple[Any, str, Any]:
     if not shape.get("lines"):
         return _idle("The case has no lines to draw."), "", None
     return figure_graph(*_picture(shape, tree, view)), _said(shape, tree, view), facts(shape)
+
+
+def _tree(text: str) -> dict[str, Any]:
+    try:
+        found: dict[str, Any] = read(text)
+        return found
+    except EditError:
+        return {}
 
 
 def _picture(shape: dict[str, Any], tree: dict[str, Any], view: str) -> tuple[Any, str, str]:

@@ -14,6 +14,7 @@ import yaml
 from fastapi import FastAPI, Query, Request, UploadFile
 from fastapi.responses import JSONResponse, Response, StreamingResponse
 
+from solver.case.case import Case
 from tests.frontend import fake_results as results
 from tests.frontend import fake_time
 
@@ -140,6 +141,30 @@ def _cases(app: FastAPI, fake: FakeService) -> None:
     def examples() -> list[dict[str, str]]:
         paths = sorted(EXAMPLES.glob("*.yaml"))
         return [{"name": p.stem, "title": p.stem, "description": "An example.", "yaml": p.read_text()} for p in paths]
+
+    @app.get("/api/v1/schema")
+    def schema() -> Any:
+        return Case.model_json_schema()
+
+    @app.get("/api/v1/cases")
+    def saved(limit: int = 50) -> Any:
+        keys = ("id", "name", "version", "content_hash", "created_at", "warnings")
+        found = [{key: case[key] for key in keys} for case in reversed(fake.cases.values())]
+        return {"items": found[:limit], "next_cursor": None}
+
+    @app.post("/api/v1/preview")
+    async def preview(request: Request) -> Any:
+        case, _ = check((await request.body()).decode())
+        lines = {
+            name: {"arc_length": [0, 100, 200], "position": [[300, 40 * i, -100], [150, 20 * i, -90], [10, i, -5]]}
+            for i, name in enumerate(case.get("lines") or {})
+        }
+        ends = {"end_a": {"tension": 5e5}, "end_b": {"tension": 9e5}, "grounded_length": 60.0}
+        return {"statics": {"converged": True, "lines": dict.fromkeys(lines, ends)}, "lines": lines, "warnings": []}
+
+    @app.get("/healthz")
+    def healthz() -> Any:
+        return {"ok": True}
 
     @app.post("/api/v1/cases/check")
     async def check_case(request: Request) -> Any:

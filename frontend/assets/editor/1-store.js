@@ -166,7 +166,7 @@
     const { ok, body } = await ask(`${API}/preview`, text, "application/yaml").catch(() => ({ ok: false, body: null }));
     if (mine !== turn || !body) return;
     const took = Math.round(performance.now() - started);
-    set("case-preview", { data: ok ? { shape: body, tree: state.tree, took } : { problem: body, tree: state.tree } });
+    set("case-preview", { data: ok ? { shape: body, text, took } : { problem: body, text } });
   }
 
   /* --- life ---------------------------------------------------------------------------------------------------- */

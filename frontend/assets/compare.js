@@ -3,7 +3,7 @@
   "use strict";
   function compareAddress(runs, options) {
     const query = new URLSearchParams();
-    if (runs && runs.length) query.set("runs", runs.join(","));
+    if (Array.isArray(runs) && runs.length) query.set("runs", runs.join(","));
     Object.entries(options || {}).forEach(([name, value]) => query.set(name, value));
     const text = query.toString().replaceAll("%2C", ",");
     window.history.replaceState(window.history.state, "", window.location.pathname + (text ? `?${text}` : ""));

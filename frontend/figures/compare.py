@@ -13,6 +13,7 @@ from frontend.figures.spectra import Band, energetic, split
 from frontend.theme import CYCLE
 
 DASH = {"frequency": "solid", "time": "dot"}
+STUDY_DASHES = ("solid", "dash", "dot")
 LF_WF = {"lf": "low frequency", "wf": "wave frequency"}
 
 
@@ -38,7 +39,8 @@ def spectra_of(curves: Sequence[Curve], at: float, height: int = 300) -> Figure:
         cut = split(axis_values(drawn.channel), values, at)
         bands.append((drawn, {band.key: band for band in cut}))
     keys = [key for key in ("lf", "wf") if any(key in own for _, own in bands)]
-    width, layout, notes = (1.0 if len(keys) == 1 else 0.42), {}, []
+    width, notes = (1.0 if len(keys) == 1 else 0.42), []
+    layout: dict[str, Any] = {}
     for column, key in enumerate(keys):
         number = "" if column == 0 else str(column + 1)
         own = [(drawn, band[key]) for drawn, band in bands if key in band]
@@ -81,16 +83,12 @@ def along(title: str, curves: Sequence[Curve], height: int = 320) -> Figure:
 
 
 def study_curves(
-    x: Sequence[float],
-    x_name: str,
-    curves: Sequence[tuple[str, Sequence[float | None]]],
-    y_name: str,
-    height: int = 380,
+    curves: Sequence[tuple[str, Sequence[float], Sequence[float | None]]], x_name: str, y_name: str, height: int = 400
 ) -> Figure:
-    """Results of a study against what it varies; a gap where a run left no number."""
+    """Results of a study over what it varies, (name, x, y) each; a gap where a run left no number."""
     data = []
-    for index, (name, values) in enumerate(curves):
-        made = curve(x, np.array([np.nan if v is None else v for v in values], dtype=float), name,
-                     CYCLE[index % len(CYCLE)], "")  # fmt: skip
+    for index, (name, x, y) in enumerate(curves):
+        known = np.array([np.nan if value is None else value for value in y], dtype=float)
+        made = curve(x, known, name, CYCLE[index % len(CYCLE)], "", STUDY_DASHES[index // len(CYCLE) % 3])
         data.append(made | {"mode": "lines+markers", "marker": {"size": 7}})
     return figure(data, height, legend=len(curves) > 1, xaxis=axis(x_name), yaxis=axis(y_name))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dash
 from dash import Dash
 
-from frontend.pages import compare, new, run, runs
+from frontend.pages import compare, new, run, runs, studies, study
 
 
 def register(app: Dash) -> None:
@@ -14,5 +14,12 @@ def register(app: Dash) -> None:
     dash.register_page("new", path="/new", title="New run – Slowdrift", name="New run", layout=new.layout, order=1)
     dash.register_page("run", path_template="/runs/<run_id>", title="Run – Slowdrift", name="Run", layout=run.layout)
     dash.register_page("compare", path="/compare", title="Compare – Slowdrift", name="Compare", layout=compare.layout)
-    for page in (runs, new, run, compare):
+    dash.register_page("studies", path="/studies", title="Studies – Slowdrift", name="Studies", layout=studies.layout)
+    dash.register_page(
+        "study-new", path="/new-study", title="New study – Slowdrift", name="New study", layout=studies.new_layout
+    )
+    dash.register_page(
+        "study", path_template="/studies/<study_id>", title="Study – Slowdrift", name="Study", layout=study.layout
+    )
+    for page in (runs, new, run, compare, studies, study):
         page.register(app)

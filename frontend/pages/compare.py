@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import dash_mantine_components as dmc
@@ -94,7 +95,7 @@ def offer(_page: str, chosen: list[str] | None) -> Any:
     items = {run["id"]: run for run in page["items"]}
     for run_id in chosen or []:
         if run_id not in items:
-            found, _ = attempt(lambda run_id=run_id: client().get(f"/runs/{run_id}"))
+            found, _ = attempt(partial(client().get, f"/runs/{run_id}"))
             items[run_id] = found or {"id": run_id, "case_name": f"{run_id[:8]} (not found)"}
     return [{"value": run["id"], "label": label(run)} for run in items.values()]
 

@@ -6,6 +6,7 @@ kept short: a worker can renew its lease, report and stop between them.
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -13,12 +14,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..outcome import DataError
-from .panels import Panels
+from .panels import Panels, sharp_edged, welded
 from .symmetry import Fundamental
 
 Array = np.ndarray
 PIECE_SECONDS = 0.4
 FIRST_PIECE = 100_000  # entries; later ones are sized by the time it took
+SHARP = math.radians(40.0)  # between panels: more is an edge of the hull, less is its curvature
 SHALLOWEST = 0.15  # k·h below which Capytaine has no Green function of finite depth
 
 
@@ -49,9 +51,10 @@ class Green:
     """Green function of panels and their copies by symmetry.
 
     surface : whether some panels lie in the still water (a lid), which asks for another way of taking out singularities.
+    closure : what panels lack in flux (`flux_closure`), added to their own influence.
     """
 
-    def __init__(self, shape: Fundamental, depth: float, surface: bool):
+    def __init__(self, shape: Fundamental, depth: float, surface: bool, closure: Array | None = None):
         capytaine = load_capytaine()
         self.depth = depth
         self._function = capytaine.Delhommeau(gf_singularities="low_freq" if surface else "high_freq")
@@ -60,6 +63,8 @@ class Green:
         self._centres, self._normals = whole.centres, whole.normals
         self.size, self.copies = shape.part.count, whole.count // shape.part.count
         self._jump = np.where(np.abs(shape.part.centres[:, 2]) < 1e-6, 1.0, 0.5)
+        if closure is not None:
+            self._jump[: closure.size] += closure
 
     def matrices(self, wave_number: float, on_piece: Callable[[float], None]) -> tuple[Array, Array]:
         """Potential S and normal velocity K at all copies of unit sources on the part: (copies, n, n) complex each.
@@ -101,6 +106,21 @@ class Green:
             return found
         except (GreenFunctionEvaluationError, NotImplementedError) as error:
             raise DataError(f"Capytaine gave up at a wave number of {wave_number:.4g} 1/m: {error}") from None
+
+
+def flux_closure(shape: Fundamental, on_piece: Callable[[float], None]) -> Array:
+    """What the flux of each panel's source through the hull lacks of its strength (n,) (H6).
+
+    A flat panel sends nothing through itself sideways, the curved one it stands for does. Through a hull closed by its
+    mirror image in a rigid still water the flux of a source on it is its strength; what the panels miss of that, put on
+    the diagonal, makes curved hulls converge with the square of the panel size. Panels at sharp edges are left alone:
+    there the midpoint rule is what misses, not the curvature.
+    """
+    _, k = Green(shape, math.inf, False).matrices(0.0, on_piece)
+    areas = shape.part.areas
+    through = np.tensordot(areas, k.real.sum(axis=0), 1)
+    sharp = sharp_edged(welded(shape.whole()), SHARP)[: shape.part.count]
+    return np.where(sharp, 0.0, 1.0 - through / areas)
 
 
 def _as_capytaine(mesh: Panels) -> Array:

@@ -17,13 +17,16 @@ from .body import folded, mirror_planes, need_body
 from .geometry import Hull
 from .lid import lid_panels
 from .output import assemble, drift_and_balance, to_netcdf
+from .panels import component_areas, welded
 from .quality import doubts, edges_of, measures
 from .solve import FrequencySolver, Solved, Wet, lowest_frequency
 from .spec import HydrodynamicJob
-from .symmetry import fundamental
+from .symmetry import Fundamental, fundamental
 
 Array = np.ndarray
 LID_FACTOR = 1.5
+LID_START = 0.8  # of the first irregular frequency
+FIRST_ZERO = 2.404826  # of the Bessel function J0
 BASE_MB = 250.0  # of a process with Capytaine and its tables, before any matrix
 ENTRY_SECONDS, FINITE_DEPTH, FLOPS = 4.5e-7, 4.0, 5e9  # of a Green function in deep water; dearer in finite depth
 BALANCE = 0.1  # of the scattered power: beyond it, energy is out of balance by more than a mesh should be
@@ -62,8 +65,20 @@ def wet(job: HydrodynamicJob, hull: Hull) -> Wet:
     if job.lid:
         size = job.lid_size or LID_FACTOR * float(hull.panels.edge_lengths.mean())
         lid = lid_panels(edges_of(hull.panels).water_line, size, part.planes)
-    water = job.water
-    return Wet(part.part, lid, part.planes, centre, water.depth_m, water.density, water.gravity)
+    water, start = job.water, 0.0
+    if lid is not None:
+        areas = component_areas(welded(Fundamental(lid, part.planes).whole()))
+        start = LID_START * irregular_frequency(float(areas.max()), hull.draught, water.gravity)
+    return Wet(part.part, lid, part.planes, centre, water.depth_m, water.density, water.gravity, start)
+
+
+def irregular_frequency(area: float, draught: float, gravity: float) -> float:
+    """Below the first irregular frequency [rad/s] of a hull with this water plane: that of a round column of its area.
+
+    ω² = g k coth(k T) with k = 2.405 / R: of all water planes of one area the circle's wave number is the least.
+    """
+    k = FIRST_ZERO / math.sqrt(area / math.pi)
+    return math.sqrt(gravity * k / math.tanh(k * draught))
 
 
 def estimate(job: HydrodynamicJob, shape: Wet) -> Estimate:

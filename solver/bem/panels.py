@@ -138,6 +138,32 @@ class Panels:
         return Panels(self.vertices, self.faces[which])
 
 
+def sharp_edged(mesh: Panels, angle: float) -> Array:
+    """Which panels of a welded mesh meet a neighbour at more than `angle` [rad] (N,)."""
+    pairs, owner = mesh.edges()
+    _, edge, count = np.unique(np.sort(pairs, axis=1), axis=0, return_inverse=True, return_counts=True)
+    edge = edge.ravel()
+    order = np.argsort(edge, kind="stable")
+    shared = order[count[edge[order]] == 2].reshape(-1, 2)
+    one, other = owner[shared[:, 0]], owner[shared[:, 1]]
+    sharp = (mesh.normals[one] * mesh.normals[other]).sum(axis=1) < np.cos(angle)
+    found = np.zeros(mesh.count, bool)
+    found[one[sharp]] = found[other[sharp]] = True
+    return found
+
+
+def component_areas(mesh: Panels) -> Array:
+    """Areas of the pieces of a welded mesh that hang together [m2]."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    pairs, _ = mesh.edges()
+    size = mesh.vertices.shape[0]
+    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(size, size))
+    labels = connected_components(graph, directed=False)[1]
+    return np.bincount(labels[mesh.faces[:, 0]], weights=mesh.areas)
+
+
 def joined(parts: list[Panels]) -> Panels:
     """Several meshes as one; corners are not welded."""
     offsets = np.cumsum([0, *(part.vertices.shape[0] for part in parts)])

@@ -12,7 +12,7 @@ import numpy as np
 from ..waves.dispersion import wave_number
 from .airy import airy
 from .drift import highest_order, kochin
-from .green import SHALLOWEST, Green, solve_symmetric
+from .green import SHALLOWEST, Green, flux_closure, solve_symmetric
 from .panels import Panels, joined
 from .symmetry import Fundamental
 
@@ -32,6 +32,8 @@ class Wet:
     depth: float
     density: float
     gravity: float
+    lid_from: float = 0.0
+    """The lid is used from this frequency up [rad/s]: well below the first irregular one it only costs accuracy."""
 
     def shape(self, with_lid: bool) -> Fundamental:
         parts = [self.hull, self.lid] if with_lid and self.lid is not None else [self.hull]
@@ -64,11 +66,14 @@ class FrequencySolver:
     def __init__(self, wet: Wet, headings: Array):
         self.wet, self.headings = wet, headings
         self._greens: dict[bool, tuple[Green, Panels, int]] = {}
+        self._closure: Array | None = None
 
     def solve(self, omega: float, on_share: OnShare) -> Solved:
         """`on_share` gets the share of this frequency that is done, with a few words, and may raise."""
         finite = 0 < omega < math.inf
-        with_lid = finite and self.wet.lid is not None
+        with_lid = finite and self.wet.lid is not None and omega >= self.wet.lid_from
+        if self._closure is None:
+            self._closure = flux_closure(self.wet.shape(False), lambda share: on_share(0.0, "hull"))
         green, whole, hull = self._prepare(with_lid)
         k = self._wave_number(omega)
         s, kk = green.matrices(k, lambda share: on_share(0.8 * share, "Green function"))
@@ -97,7 +102,11 @@ class FrequencySolver:
         if with_lid not in self._greens:
             self._greens.clear()
             shape = self.wet.shape(with_lid)
-            self._greens[with_lid] = (Green(shape, self.wet.depth, with_lid), shape.whole(), self.wet.hull.count)
+            self._greens[with_lid] = (
+                Green(shape, self.wet.depth, with_lid, self._closure),
+                shape.whole(),
+                self.wet.hull.count,
+            )
         return self._greens[with_lid]
 
     def _wave_number(self, omega: float) -> float:

@@ -78,6 +78,7 @@ def show_shared(context: ContextDep, scope: ScopeDep, share_token: Key) -> Share
 
 opened.get("/runs/{run_id}")(runs.get_run)
 opened.get("/runs/{run_id}/events", response_class=EventSourceResponse)(events.follow_run)
+opened.get("/runs/{run_id}/case")(runs.get_run_case)
 opened.get("/runs/{run_id}/summary", responses=problems(409))(runs.get_summary)
 opened.get("/runs/{run_id}/channels")(runs.list_channels)
 opened.get("/runs/{run_id}/channels/{name:path}", responses={200: {"model": ChannelValues}})(runs.get_channel)

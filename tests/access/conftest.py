@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import io
 import shutil
 from collections.abc import Iterator
@@ -75,6 +76,41 @@ class World:
 
     def with_key(self, name: str) -> TestClient:
         return self.client(authorization=f"Bearer {self.keys[name]}")
+
+    def status_of_stream(self, client: TestClient, address: str) -> tuple[int, str]:
+        """Of an answer that may have no end: the app is told that the client has gone once it has begun."""
+
+        async def ask() -> int:
+            status, begun = [0], asyncio.Event()
+            headers = {
+                **client.headers,
+                "host": "localhost",
+                "cookie": "; ".join(f"{k}={v}" for k, v in client.cookies.items()),
+            }
+            scope = {
+                "type": "http", "asgi": {"version": "3.0"}, "http_version": "1.1", "method": "GET", "scheme": "http",
+                "path": address, "raw_path": address.encode(), "query_string": b"", "root_path": "",
+                "headers": [(name.lower().encode(), value.encode()) for name, value in headers.items() if value],
+                "client": ("127.0.0.1", 1), "server": ("localhost", 80),
+            }  # fmt: skip
+
+            async def receive() -> dict[str, Any]:
+                if not asked:
+                    asked.append(True)
+                    return {"type": "http.request", "body": b"", "more_body": False}
+                await begun.wait()
+                return {"type": "http.disconnect"}
+
+            async def send(message: dict[str, Any]) -> None:
+                if message["type"] == "http.response.start":
+                    status[0] = message["status"]
+                begun.set()
+
+            asked: list[bool] = []
+            await self.app(scope, receive, send)
+            return status[0]
+
+        return asyncio.run(ask()), ""
 
     def finish(self) -> None:
         """Do what stands in the queue, in this process."""

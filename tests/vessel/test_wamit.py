@@ -119,7 +119,7 @@ def test_haskind_forces_stand_in_and_are_compared():
     only = read_wamit(texts(**{"a.3": "", "a.2": BY_HAND["a.3"]}), OPTIONS)
     assert np.allclose(only.excitation, read_wamit(texts(), OPTIONS).excitation)
     other = read_wamit(texts(**{"a.2": BY_HAND["a.3"].replace("10.0 0.0 1 2.0 90.0", "10.0 0.0 1 2.0 90.0")}), OPTIONS)
-    assert other.warnings == ()
+    assert [text for text in other.warnings if "Haskind" in text] == []
     rows = BY_HAND["a.3"].splitlines()
     rows[0] = "10.0 0.0 1 1.0 90.0 0.0 1.0"
     assert any(

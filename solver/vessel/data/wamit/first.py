@@ -165,12 +165,18 @@ def _first_of_the_turn(table: Table, column: Array) -> Array:
     return np.asarray(keep)
 
 
-def read_stiffness(table: Table, scale: Scale) -> Array:
-    """The .hst file: (6, 6) [N/m, N, N m]. Raises DataError for entries that are given twice."""
+def read_stiffness(table: Table, scale: Scale) -> tuple[Array, tuple[str, ...]]:
+    """The .hst file: (6, 6) [N/m, N, N m], and a warning for entries that are not there. Raises DataError for entries
+    that are given twice, and without C33, C44 and C55.
+    """
     i, j = whole(table, 0, "I"), whole(table, 1, "J")
     rows = place(table, 6 * i + j, (6, 6))
     needed = [(2, 2), (3, 3), (4, 4)]
     for a, b in needed:
         if rows[a, b] < 0:
             raise DataError(f"{table.name}: C({a + 1},{b + 1}) is missing; the file is cut off")
-    return np.where(rows < 0, 0.0, table.values[rows, 2]) * scale.stiffness()
+    count = int((rows >= 0).sum())
+    few = (
+        f"{table.name}: {count} of 36 entries are there, the others are taken as zero; look whether the file is cut off"
+    )
+    return np.where(rows < 0, 0.0, table.values[rows, 2]) * scale.stiffness(), () if count == 36 else (few,)

@@ -70,11 +70,11 @@ def read_wamit(files: Mapping[str, bytes], options: WamitFiles) -> HydrodynamicD
         )
     force_table = found.table(force_kind, FORCE)
     assert force_table is not None
-    periods = _periods(found, radiation_table, force_table)
+    periods = _periods(found, force_table)
     radiation = read_radiation(radiation_table, periods, found.scale)
     headings, excitation = read_force(force_table, periods, found.scale.force(), radiation.omega)
     _compare_haskind(found, force_kind, periods, radiation, headings, excitation)
-    drift_kind, drift = _drift(found, periods)
+    drift_kind, drift = _drift(found, periods, radiation.omega)
     qtf = _qtf(found, radiation.omega)
     return HydrodynamicData(
         name=_stem(found),
@@ -87,9 +87,8 @@ def read_wamit(files: Mapping[str, bytes], options: WamitFiles) -> HydrodynamicD
         added_mass_zero=radiation.zero,
         added_mass_infinite=radiation.infinite,
         excitation_zero=None,
-        mean_drift=None if drift is None else drift[2],
-        mean_drift_omega=None if drift is None else drift[0],
-        mean_drift_headings=None if drift is None else drift[1],
+        mean_drift=None if drift is None else drift[1],
+        mean_drift_headings=None if drift is None or np.array_equal(drift[0], headings) else drift[0],
         hydrostatic_stiffness=_stiffness(found),
         displaced_volume=None,
         centre_of_buoyancy=None,
@@ -147,14 +146,14 @@ def _scale(options: WamitFiles) -> Scale:
     )
 
 
-def _periods(found: _Set, radiation: Table, force: Table) -> bool:
+def _periods(found: _Set, force: Table) -> bool:
     """Whether first columns hold periods: as given, else told by the heave force. Raises DataError when unclear."""
     told, ratio = tell(force, 3, 2)
     asked = found.options.first_column
     if asked == "auto":
         if told is None:
             raise DataError(
-                f"{radiation.name}: the first column may hold periods or frequencies; the heave force at its greatest "
+                f"{force.name}: the first column may hold periods or frequencies; the heave force at its greatest "
                 f"value is {ratio:.3g} of that at its least (above {CLEAR:g}: periods, below 1/{CLEAR:g}: "
                 f"frequencies); give first_column: periods or frequencies"
             )
@@ -193,7 +192,7 @@ def _compare_haskind(
         )
 
 
-def _drift(found: _Set, periods: bool) -> tuple[str | None, tuple[Array, Array, Array] | None]:
+def _drift(found: _Set, periods: bool, omega: Array) -> tuple[str | None, tuple[Array, Array] | None]:
     kind = found.first(".8", ".9") if found.options.drift == "auto" else found.first(found.options.drift)
     if kind is None:
         if found.options.drift != "auto":
@@ -201,9 +200,9 @@ def _drift(found: _Set, periods: bool) -> tuple[str | None, tuple[Array, Array, 
         return None, None
     table = found.table(kind, DRIFT)
     assert table is not None
-    omega, headings, values, warnings = read_mean_drift(table, periods, found.scale.drift())
+    headings, values, warnings = read_mean_drift(table, periods, found.scale.drift(), omega)
     found.warnings.extend(warnings)
-    return kind, (omega, headings, values)
+    return kind, (headings, values)
 
 
 def _qtf(found: _Set, omega: Array) -> QTF | None:
@@ -221,7 +220,11 @@ def _qtf(found: _Set, omega: Array) -> QTF | None:
 
 def _stiffness(found: _Set) -> Array | None:
     table = found.table(".hst", STIFFNESS)
-    return None if table is None else read_stiffness(table, found.scale)
+    if table is None:
+        return None
+    stiffness, warnings = read_stiffness(table, found.scale)
+    found.warnings.extend(warnings)
+    return stiffness
 
 
 def _centre(found: _Set) -> Array | None:

@@ -8,6 +8,7 @@ from ....case.quantities import DOF
 from ....outcome import DataError
 from ..qtf import QTF
 from .axis import Frequencies, frequencies, headings, match, shown, span
+from .first import positions
 from .text import Array, Table, magnitude_agrees, place, whole
 
 DRIFT = ("PER", "BETA1", "BETA2", "I", "MOD", "PHS", "RE", "IM")
@@ -16,8 +17,9 @@ MAX_PAIR_NODES = 500
 MAX_CELLS = 12_000_000  # complex numbers of a QTF: 192 MB
 
 
-def read_mean_drift(table: Table, periods: bool, factor: Array) -> tuple[Array, Array, Array, tuple[str, ...]]:
-    """A .8 or .9 file: omega (W,), headings (H,), force per amplitude squared (W, H, 6), and what was left out.
+def read_mean_drift(table: Table, periods: bool, factor: Array, omega: Array) -> tuple[Array, Array, tuple[str, ...]]:
+    """A .8 or .9 file at the frequencies `omega` of the .1: headings (H,), force per amplitude squared (W, H, 6), and
+    what was left out.
 
     Rows of two different headings are left out, modes that are absent are zero. Raises DataError for gaps.
     """
@@ -32,22 +34,23 @@ def read_mean_drift(table: Table, periods: bool, factor: Array) -> tuple[Array, 
     magnitude_agrees(table, 4, 6, 7)
     if axis.finite.size != axis.omega.size:
         raise table.fault(0, "the first column holds 0 or -1; the mean drift exists at finite frequencies only")
+    where = positions(table, axis, omega)
     angles, column = np.unique(beta, return_inverse=True)
     first = _first_listed(column, table.values[:, 1])
     kept = Table(table.name, table.values[first], table.lines[first])
-    cell = (axis.column * angles.size + column) * 6 + mode
-    rows = place(kept, cell[first], (axis.omega.size, angles.size, 6))
+    cell = (where[axis.column] * angles.size + column) * 6 + mode
+    rows = place(kept, cell[first], (omega.size, angles.size, 6))
     present = (rows >= 0).any(axis=(0, 1))
     gaps = np.argwhere(rows[:, :, present] < 0)
     if gaps.size:
         w, h, dof = gaps[0]
         raise DataError(
-            f"{table.name}: {DOF[int(np.flatnonzero(present)[dof])]} is missing at {axis.omega[w]:.5g} rad/s, heading "
+            f"{table.name}: {DOF[int(np.flatnonzero(present)[dof])]} is missing at {omega[w]:.5g} rad/s, heading "
             f"{np.degrees(angles[h]):.5g} deg ({len(gaps)} entries in all, the last line is "
             f"{int(table.lines[-1])}); the file is cut off or mixes headings"
         )
     values = np.where(rows < 0, 0.0, kept.values[rows, 6]) * factor
-    return axis.omega, angles, values, warnings
+    return angles, values, warnings
 
 
 def _first_listed(column: Array, printed: Array) -> Array:

@@ -55,6 +55,7 @@ def read_table(payload: bytes, name: str, columns: Sequence[str], optional: int 
         lines.append(number)
         if len(lines) > MAX_ROWS:
             raise DataError(f"{where}: more than {MAX_ROWS} rows; leave out frequencies or headings")
+    _last_row(payload, name)
     if not lines:
         raise DataError(f"{name}: there are no numbers in the file; expected rows of {' '.join(columns)}")
     return Table(name, np.array(flat).reshape(-1, wide), np.array(lines))
@@ -71,6 +72,20 @@ def _lines(payload: bytes, name: str) -> Iterator[tuple[int, bytes]]:
             raise DataError(f"{name}, line {number}: {stop - start} characters; allowed: at most {MAX_LINE} in a line")
         yield number, payload[start:stop]
         start = stop + 1
+
+
+def _last_row(payload: bytes, name: str) -> None:
+    """Raises DataError when the last row has no end and is shorter than the rows of one width before it."""
+    if payload.endswith((b"\n", b"\r")):
+        return
+    *before, last = payload[-20 * MAX_LINE :].split(b"\n")
+    rows = [row.rstrip() for row in before[1:] if len(row.split()) == len(last.split())][-20:]
+    widths = {len(row) for row in rows}
+    if len(rows) > 1 and len(widths) == 1 and len(last.rstrip()) < widths.pop():
+        number = payload.count(b"\n") + 1
+        raise DataError(
+            f"{name}, line {number}: the last row is shorter than those before and has no end; it is cut off"
+        )
 
 
 def _heading(words: list[bytes]) -> bool:

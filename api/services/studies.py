@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import itertools
 import json
 import math
@@ -10,7 +11,7 @@ from typing import Any
 
 from fastapi.exceptions import RequestValidationError
 
-from solver.case import Case
+from solver.case import ANALYSES, Case, parse_case
 from solver.check import check
 from solver.outcome import CaseError, DataError, FieldError
 from solver.plan import plan
@@ -30,6 +31,7 @@ from .cases import DATA, find_data, nameable
 from .runs import base_of, info, labels_of, version_of
 
 MOST_FAULTS = 100
+LINES = ("/line_types/", "/lines/", "/attachments/")
 
 
 def start(context: Context, scope: Scope, request: StudyRequest, once: Once) -> StudyInfo:
@@ -82,6 +84,9 @@ class _Checker:
     def __init__(self, context: Context, scope: Scope, case: Case, analyses: list[str] | None):
         self._context, self._scope, self._analyses = context, scope, analyses
         self._base = json.loads(case.canonical())
+        if analyses is not None:
+            chosen(self._base, analyses)  # says which of them the case does not hold
+        self._checked: dict[tuple[tuple[str, str], ...], tuple[str, ...]] = {}
         self._data: dict[str | None, tuple[DataSet | None, PinnedSource]] = {}
 
     def all(self, changes: list[dict[str, Any]]) -> list[Variant]:
@@ -100,20 +105,38 @@ class _Checker:
         return variants
 
     def _one(self, overrides: Mapping[str, Any]) -> Variant:
-        document = replaced(self._base, overrides)
-        whole = nameable(chosen(document, None))
-        asked = whole if self._analyses is None else chosen(document, self._analyses)
+        whole = nameable(parse_case(replaced(self._base, overrides)))
+        asked = whole if self._analyses is None else self._asked(whole, self._analyses)
         row, source = self._source(asked)
-        try:
-            warnings = tuple(check(asked, source))
-        except DataError as error:
-            raise CaseError([FieldError(DATA, str(error))]) from None
-        plain = json.loads(whole.canonical())
+        canonical = whole.canonical()
+        plain = json.loads(canonical)
         kept = {pointer: value_at(plain, pointer) for pointer in overrides}
         kept = {pointer: overrides[pointer] if value is None else value for pointer, value in kept.items()}
         return Variant(
-            kept, whole.content_hash(), whole.name, tuple(asked.analyses.requested()), tuple(plan(asked)), row, warnings
+            kept,
+            hashlib.sha256(canonical.encode()).hexdigest(),
+            whole.name,
+            tuple(asked.analyses.requested()),
+            tuple(plan(asked)),
+            row,
+            self._warnings(asked, source, overrides),
         )
+
+    @staticmethod
+    def _asked(whole: Case, analyses: list[str]) -> Case:
+        """The valid case with a choice of its analyses, which is valid too."""
+        others = {name: None for name in ANALYSES if name not in analyses}
+        return whole.model_copy(update={"analyses": whole.analyses.model_copy(update=others)})
+
+    def _warnings(self, case: Case, source: PinnedSource, overrides: Mapping[str, Any]) -> tuple[str, ...]:
+        """What `check` says, asked once for all runs that differ in their lines only: it looks at the vessel in its sea."""
+        key = tuple((pointer, repr(value)) for pointer, value in overrides.items() if not pointer.startswith(LINES))
+        if key not in self._checked:
+            try:
+                self._checked[key] = tuple(check(case, source))
+            except DataError as error:
+                raise CaseError([FieldError(DATA, str(error))]) from None
+        return self._checked[key]
 
     def _source(self, case: Case) -> tuple[DataSet | None, PinnedSource]:
         hydrodynamics = case.vessel.hydrodynamics if case.vessel else None

@@ -57,7 +57,7 @@ class Outcome:
     outcomes: dict[str, str]
     summary: str
     warnings: tuple[str, ...]
-    solver_version: str
+    solver_version: str | None
 
 
 class TaskRepository:

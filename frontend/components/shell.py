@@ -10,7 +10,7 @@ from dash import ClientsideFunction, Dash, Input, Output, State, dcc, html, page
 from frontend.components.attributes import hyphened
 from frontend.theme import MANTINE
 
-LINKS = (("Runs", "/"), ("New run", "/new"), ("Compare", "/compare"), ("Studies", "/studies"))
+LINKS = (("Runs", "/"), ("New run", "/new"), ("Compare", "/compare"), ("Studies", "/studies"), ("Data", "/data"))
 
 
 def shell(prefix: str) -> dmc.MantineProvider:

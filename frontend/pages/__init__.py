@@ -5,7 +5,7 @@ from __future__ import annotations
 import dash
 from dash import Dash
 
-from frontend.pages import compare, new, run, runs, studies, study
+from frontend.pages import compare, data, data_set, new, run, runs, studies, study
 
 
 def register(app: Dash) -> None:
@@ -21,5 +21,10 @@ def register(app: Dash) -> None:
     dash.register_page(
         "study", path_template="/studies/<study_id>", title="Study – Slowdrift", name="Study", layout=study.layout
     )
-    for page in (runs, new, run, compare, studies, study):
+    dash.register_page("data", path="/data", title="Hydrodynamic data – Slowdrift", name="Data", layout=data.layout)
+    dash.register_page(
+        "data-set", path_template="/data/<data_set_id>", title="Hydrodynamic data – Slowdrift", name="Data set",
+        layout=data_set.layout,
+    )  # fmt: skip
+    for page in (runs, new, run, compare, studies, study, data, data_set):
         page.register(app)

@@ -13,7 +13,7 @@ from .judgement import Array, Check, judge, pair, percent, skipped
 ASYMMETRY = 0.02  # of √(ii·jj)
 NEGATIVE = 0.01  # of the largest scaled damping
 CAUSALITY = 0.05  # of the peak of the pair
-COARSE = 0.05  # of the peak: what a point differs by from its neighbours' line
+COARSE = 0.10  # of the peak: what a point differs by from its neighbours' line
 SPIKE = 0.05
 ALONE = 6.0  # times the median of the neighbourhood
 

@@ -36,6 +36,9 @@ class Client:
     def post_yaml(self, path: str, text: str) -> Any:
         return self._send("POST", path, content=text.encode(), headers=YAML)
 
+    def patch(self, path: str, json: Any) -> Any:
+        return self._send("PATCH", path, json=json)
+
     def delete(self, path: str) -> Any:
         return self._send("DELETE", path)
 

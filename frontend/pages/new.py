@@ -17,14 +17,14 @@ from frontend.format import moment
 SAVED = 40  # newest saved cases offered as a start
 
 
-def layout(case: str | None = None, **_: Any) -> Any:
-    """`/new?case=ID` starts from a stored case."""
+def layout(case: str | None = None, run: str | None = None, **_: Any) -> Any:
+    """`/new?case=ID` starts from a stored case, `/new?run=ID` from what a run computed (a study's run: with its changes)."""
     views = [
         {"value": value, "label": text} for value, text in (("form", "Form"), ("yaml", "YAML"), ("preview", "Preview"))
     ]
     return dmc.Stack(
         [
-            dcc.Store(id="new-source", data=case),
+            dcc.Store(id="new-source", data=f"/runs/{run}/case" if run else f"/cases/{case}" if case else None),
             dcc.Store(id="examples"),
             dmc.Group([dmc.Title("New run", order=1), _actions()], justify="space-between"),
             _starts(),
@@ -147,5 +147,5 @@ def start(source: str | None) -> tuple[Any, ...]:
     ]
     if not source:
         return texts, choices, cases, no_update, no_update
-    stored, error = attempt(lambda: client().get(f"/cases/{source}"))
+    stored, error = attempt(lambda: client().get(source))
     return texts, choices, cases, stored["yaml"] if stored else no_update, refusal(error) if error else no_update

@@ -46,7 +46,7 @@
     if (area && loadedFor !== area) {
       loadedFor = area;
       painted = "";
-      const draft = theCase.open(new URLSearchParams(window.location.search).has("case"));
+      const draft = theCase.open(/[?&](case|run)=/.test(window.location.search));
       form.mount();
       if (!text && draft) {
         set("case-text", { value: draft });

@@ -12,13 +12,14 @@ from sqlalchemy.orm import Session
 
 from ..clock import utc_now
 from ..hydrodynamics import Mesh
-from ..models import CaseVersion, DataSet, Project, Run, Team
+from ..models import CaseVersion, DataSet, Project, Run, Study, Team
 from ..people import OWNER, ApiKey, Membership, Share, SignIn, User
 
 TOUCH = timedelta(minutes=1)
 """`last_used_at` is kept this exactly."""
 PLACES: dict[str, Any] = {
     "run_id": Run, "job_id": Run, "case_id": CaseVersion, "data_set_id": DataSet, "mesh_id": Mesh, "share_id": Share,
+    "study_id": Study,
 }  # fmt: skip
 """Parameters of addresses that name a row, and so the project to look in."""
 

@@ -183,7 +183,7 @@ class RunRepository(Scoped):
         run = self._locked(key)
         if run.state not in FINAL:
             raise ConflictError(f"The run is {run.state}; cancel it first.")
-        self.session.execute(delete(Run).where(Run.id == key))  # the database cascades
+        self.session.execute(delete(Run).where(Run.id == key, self._mine(Run)))  # the database cascades
 
     def _locked(self, key: str) -> Run:
         query = self._select(Run).where(Run.id == key).with_for_update()

@@ -32,7 +32,7 @@ class Settings(BaseModel):
     """redis://… or amqp://…; empty: files in the data folder."""
     queue_prefix: str = Field("slowdrift", pattern=r"^[A-Za-z0-9_-]{1,60}$")
     """Name before the queues, so that several installations can share a broker."""
-    lease_seconds: float = Field(60.0, gt=0)
+    lease_seconds: float = Field(30.0, gt=0)
     """How long a task belongs to a worker that gives no sign."""
     heartbeat_seconds: float = Field(1.0, gt=0)
     """How often a worker renews the lease, reports progress and looks for a cancel."""

@@ -337,6 +337,7 @@ MATRIX: dict[str, Line] = {
         "read row", 200, f"{DATA}/coefficients?quantity=added_mass&i=0&j=0"
     ),
     "GET /api/v1/data-sets/{data_set_id}/stiffness": Line("read row", 200, f"{DATA}/stiffness"),
+    "GET /api/v1/data-sets/{data_set_id}/export": Line("read row", 200, f"{DATA}/export"),
     "DELETE /api/v1/data-sets/{data_set_id}": Line("edit row", 204, "/api/v1/data-sets/{new_data_set}"),
     # hydrodynamics
     "GET /api/v1/hydrodynamics/schema": Line("read", 200),

@@ -17,6 +17,8 @@ from store.models import Run
 from store.repositories import ChannelRepository
 from tests.io.channels import made
 
+ROOT = Path(__file__).resolve().parents[2]
+
 
 @pytest.fixture
 def run(client: TestClient, database: Database, riser: str) -> str:
@@ -94,3 +96,26 @@ def test_without_pyarrow_parquet_is_refused_with_the_remedy(
     answer = client.get(f"/api/v1/runs/{run}/export", params={"format": "parquet"})
     assert answer.status_code == 422
     assert "slowdrift[parquet]" in answer.json()["errors"][0]["message"]
+
+
+def test_hydrodynamic_data_leave_as_netcdf_and_as_wamit_files(client: TestClient, tmp_path: Path) -> None:
+    xr = pytest.importorskip("xarray")
+    payload = (ROOT / "examples" / "barge-240x46x10.nc").read_bytes()
+    sent = client.post("/api/v1/data-sets", files={"file": ("barge.nc", payload)}, data={"name": "barge 240"}).json()
+    address = f"/api/v1/data-sets/{sent['id']}/export"
+    answer = client.get(address)
+    assert answer.headers["content-disposition"] == 'attachment; filename="barge_240.nc"'
+    path = tmp_path / "barge.nc"
+    path.write_bytes(answer.content)
+    with xr.open_dataset(path) as ours, xr.open_dataset(ROOT / "examples" / "barge-240x46x10.nc") as theirs:
+        finite = np.isfinite(theirs["omega"].values) & (theirs["omega"].values > 0)
+        assert np.isin(theirs["omega"].values[finite], ours["omega"].values).all()
+    answer = client.get(address, params={"format": "wamit", "length": 10})
+    assert answer.status_code == 200, answer.text
+    with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:
+        assert {"barge_240.1", "barge_240.3", "barge_240.hst"} <= set(archive.namelist())
+    back = client.post("/api/v1/data-sets", files={"file": ("again.zip", answer.content)})
+    assert back.status_code == 201, back.text
+    assert client.get(address, params={"format": "matlab"}).status_code == 422
+    assert client.get(address, params={"length": 0}).status_code == 422
+    assert client.get("/api/v1/data-sets/none/export").status_code == 404

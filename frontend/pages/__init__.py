@@ -5,7 +5,7 @@ from __future__ import annotations
 import dash
 from dash import Dash
 
-from frontend.pages import compare, data, data_set, new, run, runs, studies, study
+from frontend.pages import compare, data, data_set, hull, hull_job, new, run, runs, studies, study
 
 
 def register(app: Dash) -> None:
@@ -26,5 +26,10 @@ def register(app: Dash) -> None:
         "data-set", path_template="/data/<data_set_id>", title="Hydrodynamic data – Slowdrift", name="Data set",
         layout=data_set.layout,
     )  # fmt: skip
-    for page in (runs, new, run, compare, studies, study, data, data_set):
+    dash.register_page("hull", path="/hull", title="Data from a hull – Slowdrift", name="Hull", layout=hull.layout)
+    dash.register_page(
+        "hull-job", path_template="/hull/<job_id>", title="Data from a hull – Slowdrift", name="Hull job",
+        layout=hull_job.layout,
+    )  # fmt: skip
+    for page in (runs, new, run, compare, studies, study, data, data_set, hull, hull_job):
         page.register(app)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 import re
 from array import array
@@ -36,6 +37,9 @@ def read_table(payload: bytes, name: str, columns: Sequence[str], optional: int 
     Exponents without a letter (1.0-100) and with D are read; one heading line is skipped. Raises DataError with the
     line for a wrong number of columns, what is not a number, NaN, infinity and ****.
     """
+    quick = _all_alike(payload, name, len(columns))
+    if quick is not None:
+        return quick
     wide, flat, lines = len(columns), array("d"), array("q")
     for number, line in _lines(payload, name):
         words = line.split()
@@ -59,6 +63,25 @@ def read_table(payload: bytes, name: str, columns: Sequence[str], optional: int 
     if not lines:
         raise DataError(f"{name}: there are no numbers in the file; expected rows of {' '.join(columns)}")
     return Table(name, np.array(flat).reshape(-1, wide), np.array(lines))
+
+
+def _all_alike(payload: bytes, name: str, wide: int) -> Table | None:
+    """A file whose every line is a row of so many plain numbers, read ten times as fast; None for any other."""
+    first = payload[: payload.find(b"\n") + 1 or MAX_LINE]
+    skip = int(_heading(first.split()))
+    count = payload.count(b"\n") + (not payload.endswith(b"\n")) - skip
+    ends = np.flatnonzero(np.frombuffer(payload, np.uint8) == 10)
+    widest = int(np.diff(ends, prepend=-1, append=len(payload)).max())
+    if b"_" in payload or widest > MAX_LINE or count > MAX_ROWS:
+        return None
+    try:
+        values = np.loadtxt(io.BytesIO(payload), ndmin=2, comments=None, skiprows=skip, encoding="ascii")
+    except (ValueError, UnicodeError):
+        return None
+    if values.shape != (count, wide) or not np.isfinite(values).all():
+        return None  # the slow way finds the line
+    _last_row(payload, name)
+    return Table(name, values, np.arange(count) + 1 + skip)
 
 
 def _lines(payload: bytes, name: str) -> Iterator[tuple[int, bytes]]:

@@ -158,11 +158,11 @@ def test_a_file_of_500_mb_is_refused_before_it_is_read(tmp_path):
         file.truncate(500_000_000)
     (tmp_path / "big.3").write_bytes(PARTS["t.3"])
     script = (
-        "import resource, sys; from pathlib import Path; from solver.vessel.data import FileSource; "
+        "import sys; from pathlib import Path; from solver.vessel.data import FileSource; "
         "from solver.outcome import DataError\n"
         "try: FileSource(Path(sys.argv[1])).open('big')\n"
         "except DataError as error: print(error)\n"
-        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
+        "print(next(line.split()[1] for line in open('/proc/self/status') if line.startswith('VmHWM')))"
     )
     done = subprocess.run([sys.executable, "-c", script, str(tmp_path)], capture_output=True, text=True, check=True)
     said, peak = done.stdout.strip().splitlines()

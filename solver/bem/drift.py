@@ -68,9 +68,10 @@ def absorbed(
 
 
 def _scales(omega: float, k: float, depth: float, density: float, gravity: float) -> tuple[float, float]:
-    forward = 2 * math.pi * density * omega
-    if math.isinf(depth):
-        return forward, 2 * math.pi * density * k**2
+    """Factors of the incident wave's work on the body and of the power sent out, both over the phase speed (H8).
+
+    2πρgk/ω and 2πρkD, D = k² / ((k² - K²) h + K), K = ω²/g; in deep water 2πρω and 2πρk².
+    """
     deep = omega**2 / gravity
-    share = (deep * depth) ** 2 / (depth * ((k * depth) ** 2 - (deep * depth) ** 2 + deep * depth))
-    return forward, 2 * math.pi * density * k * share
+    sent = k if math.isinf(depth) else k**2 / ((k**2 - deep**2) * depth + deep)
+    return 2 * math.pi * density * gravity * k / omega, 2 * math.pi * density * k * sent

@@ -57,7 +57,7 @@ class Green:
     def __init__(self, shape: Fundamental, depth: float, surface: bool, closure: Array | None = None):
         capytaine = load_capytaine()
         self.depth = depth
-        self._function = capytaine.Delhommeau(gf_singularities="low_freq" if surface else "high_freq")
+        self._function = capytaine.Delhommeau(gf_singularities="low_freq")
         self._sources = capytaine.Mesh(shape.part.vertices, _as_capytaine(shape.part))
         whole = shape.whole()
         self._centres, self._normals = whole.centres, whole.normals

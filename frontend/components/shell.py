@@ -62,7 +62,7 @@ def _header(prefix: str) -> dmc.AppShellHeader:
 
 
 def _away() -> html.Div:
-    """Shown by `assets/away.js` while requests do not get through."""
+    """Shown by `assets/a-net.js` while requests do not get through."""
     words = "The server does not answer. What you write is kept in this browser; this page goes on when it is back."
     return html.Div(words, id="sd-away", hidden=True, role="status")
 

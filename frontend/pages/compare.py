@@ -21,6 +21,7 @@ from frontend.figures.base import axis_values
 from frontend.figures.compare import Curve, along, spectra_of
 from frontend.figures.spectra import border
 from frontend.format import DOFS, MISSING, moment, number, percent
+from frontend.pages import run_head
 from frontend.panels.overview import domains_table
 from frontend.results import Results
 
@@ -44,7 +45,9 @@ def layout(runs: str = "", **query: Any) -> Any:
             dcc.Store(id="compare-options", data=options),
             dcc.Store(id="compare-drawn"),
             dcc.Store(id="compare-address"),
-            dmc.Title("Compare", order=1),
+            dmc.Group(
+                [dmc.Title("Compare", order=1), dmc.Group(run_head.sharing("compare"), gap="xs")], justify="space-between"
+            ),
             dmc.MultiSelect(
                 id="compare-runs", label=f"Runs, two to {MOST}; the first is what the others are compared with",
                 data=[{"value": run, "label": run[:8]} for run in chosen], value=chosen, maxValues=MOST, searchable=True,
@@ -58,6 +61,7 @@ def layout(runs: str = "", **query: Any) -> Any:
 
 
 def register(app: Dash) -> None:
+    run_head.register_sharing(app, "compare")
     app.callback(
         Output("compare-runs", "data"), Input("compare-page", "id"), State("compare-runs", "value")
     )(offer)  # fmt: skip
@@ -90,9 +94,9 @@ def label(run: dict[str, Any]) -> str:
 def offer(_page: str, chosen: list[str] | None) -> Any:
     """The newest finished runs, and those chosen already."""
     page, error = attempt(lambda: client().get("/runs", limit=OFFERED, state="succeeded"))
-    if error:
+    if error and not chosen:
         return no_update
-    items = {run["id"]: run for run in page["items"]}
+    items = {run["id"]: run for run in (page or {}).get("items") or []}  # behind a share link: only those it opens
     for run_id in chosen or []:
         if run_id not in items:
             found, _ = attempt(partial(client().get, f"/runs/{run_id}"))

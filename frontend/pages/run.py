@@ -34,10 +34,13 @@ def layout(run_id: str = "", tab: str = "overview", **query: Any) -> Any:
             dcc.Store(id="run-address"),
             html.Div([run_head.layout(run_id), html.Div(id="run-messages")]),
             dmc.Tabs(
-                [dmc.TabsList(id="run-tab-list", children=tab_list([]))],
+                [
+                    dmc.TabsList(id="run-tab-list", children=tab_list([])),
+                    *(dmc.TabsPanel([], value=panel.key) for panel in panels.PANELS),  # what the tabs' ARIA refers to
+                ],
                 id="run-tabs",
                 value=panels.find(tab).key,
-                keepMounted=False,
+                keepMounted=True,
                 className="sd-tabs",
             ),
             html.Div(dmc.Skeleton(h=240), id="run-panel", role="tabpanel"),
@@ -105,6 +108,7 @@ def register(app: Dash) -> None:
         prevent_initial_call=True,
     )(choose)
     history.register(app)
+    run_head.register_sharing(app, "run")
     app.callback(
         Output("notices", "sendNotifications", allow_duplicate=True),
         Input("run-cancel", "n_clicks"),

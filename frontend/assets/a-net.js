@@ -1,4 +1,5 @@
-/* The server is away: say so, ask now and again, and tell everybody when it is back. Every request of the page passes here. */
+/* Every request of the page passes here. The server is away: say so, ask now and again, tell everybody when it is back.
+   A page opened by a share link: its callbacks say by which, and what it reads is behind that link. */
 (function () {
   "use strict";
   const ASK_MS = 1500;
@@ -25,9 +26,17 @@
     setTimeout(ask, ASK_MS);
   }
 
-  window.fetch = async (...args) => {
+  const token = () => (/\/shared\/([A-Za-z0-9_.-]+)/.exec(window.location.pathname) || [])[1];
+
+  window.fetch = async (what, how) => {
+    const link = token();
+    if (link && String(what.url || what).includes("_dash-update-component")) {
+      const headers = new Headers((how || {}).headers);
+      headers.set("Slowdrift-Share", link);
+      how = { ...how, headers };
+    }
     try {
-      return await plain(...args);
+      return await plain(what, how);
     } catch (error) {
       if (error.name !== "AbortError" && !away && document.visibilityState !== "hidden") {
         away = true;
@@ -37,4 +46,6 @@
       throw error;
     }
   };
+
+  window.slowdrift = Object.assign(window.slowdrift || {}, { api: () => (token() ? `/api/v1/shared/${token()}` : "/api/v1") });
 })();

@@ -108,4 +108,5 @@ def install(app: FastAPI) -> None:
         request_validation_handler=_request,
     )
     add_exception_handler(app, handler, generic_swagger_defaults=False)
-    app.add_exception_handler(SlowdriftError, handler)
+    for kind in (SlowdriftError, OperationalError, InterfaceError):
+        app.add_exception_handler(kind, handler)

@@ -21,6 +21,7 @@ from store.repositories import QueueRepository
 
 WINDOW = timedelta(minutes=10)
 """Runs that ended longer ago than this before a scrape are not seen by the histogram of run times."""
+METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")
 FAST = (0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 30)
 SLOW = (0.1, 0.3, 1, 3, 10, 30, 100, 300, 1000, 3000, 10_000, 30_000)
 
@@ -128,6 +129,15 @@ class Meter:
             return await self.app(scope, receive, watch)
         finally:
             if not seen["stream"]:
-                route = getattr(scope.get("route"), "path", "other")
-                labels = (scope["method"] if len(scope["method"]) < 8 else "other", route, str(seen["status"]))
+                method = scope["method"] if scope["method"] in METHODS else "other"
+                labels = (method, _route(scope), str(seen["status"]))
                 self.metrics.requests.labels(*labels).observe(time.perf_counter() - began)
+
+
+def _route(scope: Scope) -> str:
+    """The address with its parameters' names; whatever no route answers is one, so that strangers make no series."""
+    path: str | None = getattr(scope.get("route"), "path", None)
+    if path is None:
+        return "other"
+    first = f"/{scope['path'].split('/')[1]}"
+    return path if path.startswith(first) or first != "/api" else f"/api/v1{path}"

@@ -5,7 +5,22 @@ from __future__ import annotations
 import dash
 from dash import Dash
 
-from frontend.pages import compare, data, data_set, hull, hull_job, new, run, runs, studies, study
+from frontend.pages import (
+    account,
+    compare,
+    data,
+    data_set,
+    hull,
+    hull_job,
+    new,
+    run,
+    runs,
+    shared,
+    sign_in,
+    studies,
+    study,
+    teams,
+)
 
 
 def register(app: Dash) -> None:
@@ -31,5 +46,30 @@ def register(app: Dash) -> None:
         "hull-job", path_template="/hull/<job_id>", title="Data from a hull – Slowdrift", name="Hull job",
         layout=hull_job.layout,
     )  # fmt: skip
-    for page in (runs, new, run, compare, studies, study, data, data_set, hull, hull_job):
+    dash.register_page("sign-in", path="/sign-in", title="Sign in – Slowdrift", name="Sign in", layout=sign_in.layout)
+    dash.register_page(
+        "invitation", path_template="/invitations/<token>", title="Invitation – Slowdrift", name="Invitation",
+        layout=sign_in.invitation,
+    )  # fmt: skip
+    dash.register_page("account", path="/account", title="Account – Slowdrift", name="Account", layout=account.layout)
+    dash.register_page("teams", path="/teams", title="Teams – Slowdrift", name="Teams", layout=teams.layout)
+    dash.register_page(
+        "shared", path_template="/shared/<token>", title="Shared – Slowdrift", name="Shared", layout=shared.layout
+    )
+    for page in (
+        shared,
+        sign_in,
+        account,
+        teams,
+        runs,
+        new,
+        run,
+        compare,
+        studies,
+        study,
+        data,
+        data_set,
+        hull,
+        hull_job,
+    ):
         page.register(app)

@@ -11,6 +11,7 @@ COMMANDS = {
     "run": ("cli.run", "run a case here, without a server"),
     "moordyn": ("cli.moordyn", "read a MoorDyn deck into a case, or write one from a case"),
     "data": ("cli.data", "check hydrodynamic data, or convert between WAMIT's files and NetCDF"),
+    "bem": ("cli.bem", "compute hydrodynamic data of a hull, without a server"),
     "serve": ("cli.serve", "start the service: REST, pages and workers together"),
     "worker": ("cli.worker", "start one worker, for a service on several processes or machines"),
     "demo": ("cli.demo", "start the service, run the FPSO example and show its results"),

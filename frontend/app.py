@@ -29,6 +29,8 @@ def create_app(api_base_url: str | None = None, prefix: str = "/app/") -> flask.
     server.config["SLOWDRIFT_CLIENT"] = Client(api_base_url)
     server.config["COMPRESS_ALGORITHM"] = ["zstd", "br", "gzip", "deflate"]
     server.config["COMPRESS_BR_LEVEL"] = 4
+    server.config["COMPRESS_CACHE_BACKEND"] = caching.Compressed
+    server.config["COMPRESS_CACHE_KEY"] = caching.compressed_key
     app = Dash(
         __name__,
         server=server,  # type: ignore[arg-type]  # Dash takes a Flask app, its hint does not say so

@@ -29,6 +29,7 @@ def layout(case: str | None = None, run: str | None = None, **_: Any) -> Any:
             dmc.Group([dmc.Title("New run", order=1), _actions()], justify="space-between"),
             _starts(),
             html.Div(id="new-message"),
+            imports.message(),
             html.Div(
                 dmc.SegmentedControl(
                     id="bench-view", data=views, value="form", fullWidth=True, **hyphened(aria_label="Show")

@@ -21,7 +21,7 @@ def profile(z: Array, k: float, depth: float) -> tuple[Array, Array]:
 
 
 def airy(points: Array, heading: float, omega: float, gravity: float, depth: float) -> tuple[Array, Array]:
-    """Potential (N,) and velocity (N, 3) of a wave of unit amplitude, its crest at the origin at t = 0 (H2).
+    """Potential (N,) and velocity (N, 3) of a wave of unit amplitude, its crest at the origin at t = 0 (H1).
 
     φ = -(i g / ω) cosh k(z + h) / cosh kh · e^{i k (x cos β + y sin β)}.
     """

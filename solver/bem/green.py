@@ -67,7 +67,7 @@ class Green:
             self._jump[: closure.size] += closure
 
     def matrices(self, wave_number: float, on_piece: Callable[[float], None]) -> tuple[Array, Array]:
-        """Potential S and normal velocity K at all copies of unit sources on the part: (copies, n, n) complex each.
+        """Potential S and normal velocity K at all copies of unit sources on the part (H2): (copies, n, n) complex each.
 
         K has the jump at a panel itself: 1/2 of its strength, 1 in the still water. wave_number [1/m] may be 0 or infinite.
         `on_piece` gets the share done, and may raise.
@@ -109,7 +109,7 @@ class Green:
 
 
 def flux_closure(shape: Fundamental, on_piece: Callable[[float], None]) -> Array:
-    """What the flux of each panel's source through the hull lacks of its strength (n,) (H6).
+    """What the flux of each panel's source through the hull lacks of its strength (n,) (H3).
 
     A flat panel sends nothing through itself sideways, the curved one it stands for does. Through a hull closed by its
     mirror image in a rigid still water the flux of a source on it is its strength; what the panels miss of that, put on

@@ -75,7 +75,7 @@ def wet(job: HydrodynamicJob, hull: Hull) -> Wet:
 def irregular_frequency(area: float, draught: float, gravity: float) -> float:
     """Below the first irregular frequency [rad/s] of a hull with this water plane: that of a round column of its area.
 
-    ω² = g k coth(k T) with k = 2.405 / R: of all water planes of one area the circle's wave number is the least.
+    ω² = g k coth(k T) with k = 2.405 / R (H12): of all water planes of one area the circle's wave number is the least.
     """
     k = FIRST_ZERO / math.sqrt(area / math.pi)
     return math.sqrt(gravity * k / math.tanh(k * draught))

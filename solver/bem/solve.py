@@ -69,7 +69,7 @@ class FrequencySolver:
         self._closure: Array | None = None
 
     def solve(self, omega: float, on_share: OnShare) -> Solved:
-        """`on_share` gets the share of this frequency that is done, with a few words, and may raise."""
+        """Everything at one frequency (H5, H6). `on_share` gets the share done, with a few words, and may raise."""
         finite = 0 < omega < math.inf
         with_lid = finite and self.wet.lid is not None and omega >= self.wet.lid_from
         if self._closure is None:
@@ -86,7 +86,7 @@ class FrequencySolver:
             velocity = np.column_stack([velocity, *(np.where(mask, a, 0.0) for a in against)])
         strength, potential = solve_symmetric(s, kk, velocity, lambda share: on_share(0.8 + 0.2 * share, "equations"))
         pressure_side = modes * whole.areas[:, None]
-        z = self.wet.density * pressure_side.T @ potential  # ρ ∫ φ n dS (H5)
+        z = self.wet.density * pressure_side.T @ potential  # ρ ∫ φ n dS
         added_mass = -z[:, :6].real
         if not finite:
             return Solved(omega, added_mass, np.zeros((6, 6)))

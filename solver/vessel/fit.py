@@ -12,10 +12,13 @@ from ..case.analysis import FrequencyDomain
 from ..case.environment import RegularWave
 from ..case.vessel import Hydrodynamics
 from ..outcome import CaseError, DataError, FieldError
+from ..waves.spectra import hs_in_band, significant_height
 from .data import HydrodynamicData
 from .data.interpolate import PRINTED
 from .quality import quality_warnings
 from .rigid import about_cg
+
+UNSEEN = 0.01  # of the energy of a sea, below the lowest frequency of the data
 
 
 def fit(case: Case, data: HydrodynamicData) -> tuple[str, ...]:
@@ -35,7 +38,8 @@ def fit(case: Case, data: HydrodynamicData) -> tuple[str, ...]:
     ]
     if errors:
         raise CaseError(errors)
-    return (*data.warnings, *quality_warnings(data, low, high), *_below_the_pairs(case, choice, data, low))
+    doubts = (*_below_the_data(case, data, low), *_below_the_pairs(case, choice, data, low))
+    return (*data.warnings, *quality_warnings(data, low, high), *doubts)
 
 
 def _band(case: Case) -> tuple[float, float]:
@@ -116,6 +120,21 @@ def _directions(case: Case, choice: Hydrodynamics, data: HydrodynamicData, low: 
                 about.mean_drift_at(about.drift_omega[:1], heading)
         except DataError as error:
             yield FieldError(("environment", "seastates", index, "direction"), str(error))
+
+
+def _below_the_data(case: Case, data: HydrodynamicData, low: float) -> Iterator[str]:
+    """Waves below the lowest frequency of the data, where forces go to their long-wave limit (V5)."""
+    first = float(data.omega[0])
+    for index, sea in enumerate(case.environment.seastates):
+        if isinstance(sea, RegularWave) or low >= first * (1 - PRINTED):
+            continue
+        share = (hs_in_band(sea, low, first) / significant_height(sea)) ** 2
+        if share > UNSEEN:
+            yield (
+                f"{data.name}: {100 * share:.2g} % of the energy of sea {index + 1} lies below the lowest frequency of the "
+                f"data, {first:.4g} rad/s (threshold {100 * UNSEEN:g} %); forces there go to their long-wave limit; compute lower "
+                f"frequencies"
+            )
 
 
 def _below_the_pairs(case: Case, choice: Hydrodynamics, data: HydrodynamicData, low: float) -> Iterator[str]:

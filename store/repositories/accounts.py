@@ -12,6 +12,7 @@ from ..clock import utc_now
 from ..errors import ConflictError, NotFoundError
 from ..models import Team
 from ..people import ApiKey, Membership, SignIn, User
+from .unique import add_unique
 
 KEYS_EACH = 100
 
@@ -23,12 +24,8 @@ class AccountRepository:
     # -- people
 
     def add(self, email: str, name: str, password_hash: str | None, is_admin: bool) -> User:
-        if self.by_email(email) is not None:
-            raise ConflictError(f"There is an account {email!r} already.")
         user = User(email=email, name=name, password_hash=password_hash, is_admin=is_admin)
-        self.session.add(user)
-        self.session.flush()
-        return user
+        return add_unique(self.session, user, f"There is an account {email!r} already.")
 
     def get(self, key: str) -> User:
         user = self.session.get(User, key)

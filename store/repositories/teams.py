@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Any
 
 from sqlalchemy import delete, func, select, update
-from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from ..clock import utc_now
@@ -14,6 +13,7 @@ from ..errors import ConflictError, NotFoundError
 from ..examples import bundled_hashes
 from ..models import DEFAULT_TEAM, Base, DataSet, Preview, Project, Team
 from ..people import OWNER, Audit, Invitation, Membership, SignIn, User
+from .unique import add_unique
 
 FIRST_PROJECT = "default"
 GOES_ALONG = ("shares", "previews", "sign_ins", "audit")
@@ -26,7 +26,7 @@ class TeamRepository:
 
     def add(self, name: str, owner_id: str | None) -> Team:
         """A team with its first project, and its owner as member."""
-        team = self._unique(Team(name=name), f"There is a team {name!r} already.")
+        team = add_unique(self.session, Team(name=name), f"There is a team {name!r} already.")
         self.session.add(Project(team_id=team.id, name=FIRST_PROJECT))
         if owner_id is not None:
             self.session.add(Membership(team_id=team.id, user_id=owner_id, role=OWNER))
@@ -58,7 +58,7 @@ class TeamRepository:
 
     def rename(self, row: Team | Project, name: str) -> None:
         row.name = name
-        self._unique(row, f"There is one of the name {name!r} already.")
+        add_unique(self.session, row, f"There is one of the name {name!r} already.")
 
     def delete(self, team_id: str) -> None:
         if team_id == DEFAULT_TEAM:
@@ -79,8 +79,8 @@ class TeamRepository:
         """Become a member. ConflictError for whoever is one already."""
         if self.session.get(Membership, (team_id, user_id)) is not None:
             raise ConflictError("You belong to this team already.")
-        self.session.add(Membership(team_id=team_id, user_id=user_id, role=role))
-        self.session.flush()
+        row = Membership(team_id=team_id, user_id=user_id, role=role)
+        add_unique(self.session, row, "You belong to this team already.")
 
     def set_role(self, team_id: str, user_id: str, role: str) -> None:
         self._member(team_id, user_id).role = role
@@ -107,7 +107,9 @@ class TeamRepository:
     # -- projects
 
     def add_project(self, team_id: str, name: str) -> Project:
-        return self._unique(Project(team_id=team_id, name=name), f"The team has a project {name!r} already.")
+        return add_unique(
+            self.session, Project(team_id=team_id, name=name), f"The team has a project {name!r} already."
+        )
 
     def projects(self, team_id: str) -> Sequence[Project]:
         return self.session.scalars(select(Project).where(Project.team_id == team_id).order_by(Project.id)).all()
@@ -139,15 +141,6 @@ class TeamRepository:
         self.session.execute(update(SignIn).where(SignIn.project_id == project.id).values(project_id=None))
         self.session.delete(project)
         self.session.flush()
-
-    def _unique(self, row: Any, refusal: str) -> Any:
-        try:
-            with self.session.begin_nested():
-                self.session.add(row)
-                self.session.flush()
-        except IntegrityError:
-            raise ConflictError(refusal) from None
-        return row
 
     # -- invitations
 

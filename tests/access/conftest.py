@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import io
+import os
 import shutil
+import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -19,6 +21,7 @@ from fastapi.testclient import TestClient
 
 from api.guard import COOKIE
 from api.main import create_app
+from store import migrations
 from store.bundled import register_bundled
 from store.clock import utc_now
 from store.database import Database
@@ -32,6 +35,7 @@ from store.settings import Settings
 from store.tokens import KEY, SESSION, START, digest, new_token, read_secret
 from tests.api.conftest import fpso, migrated, riser  # noqa: F401  (fixtures)
 from tests.service import fake_solver
+from tests.service.conftest import create_database, drop_database
 from tests.service.running import a_case
 from worker.execute import Worker, execute
 
@@ -167,14 +171,21 @@ KEYS = (
 def opened(folder: Path, template: Path, hashed: str, **settings: Any) -> Iterator[World]:
     shutil.copy(template, folder / "slowdrift.db")
     chosen = Settings(data_dir=folder, preview_seconds=0.2, solver="tests.service.fake_solver", accounts="on")
+    name = f"sd_test_{uuid.uuid4().hex[:12]}"
+    on_server = os.environ.get("SLOWDRIFT_TEST_DATABASE") == "postgresql"  # the whole folder of tests, over a server
+    if on_server:
+        settings |= {"database_url": create_database(name)}
     chosen = chosen.model_copy(update=settings)
     database = Database(chosen.database)
+    migrations.upgrade(database)
     app = create_app(chosen, reconcile=False)
     with TestClient(app, base_url="http://localhost"):
         world = World(app, chosen, database)
         people(world, hashed)
         yield world
     database.close()
+    if on_server:
+        drop_database(name)
 
 
 @pytest.fixture(scope="module")

@@ -123,6 +123,19 @@ def test_event_streams_take_the_cookie(serving: tuple[str, World], reader: httpx
         assert stranger.get("/api/v1/events").status_code == 401
 
 
+def test_a_stream_ends_and_is_asked_for_again(
+    serving: tuple[str, World], reader: httpx.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What one may follow is judged again now and then, though a stream has no end."""
+    from api.routes import events
+
+    url, _ = serving
+    monkeypatch.setattr(events, "SIGNED_IN_SECONDS", 0.3)
+    run = reader.post("/api/v1/runs", json={"case": a_case("waits")}, headers={"origin": url}).json()
+    for path in ("/api/v1/events", f"/api/v1/runs/{run['id']}/events"):
+        assert reader.get(path, timeout=20).status_code == 200  # it has ended
+
+
 # -- the command line
 
 

@@ -134,3 +134,28 @@ def test_mean_drift_of_a_free_hemisphere_in_short_and_long_waves(sphere: Frequen
             assert free < 1e-3 * RHO * G
     assert ratio[0.05] < 0.1
     assert ratio[3.0] == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.slow
+def test_barge_of_a_thousand_panels() -> None:
+    """240 x 46 x 10 m: added mass over 1.1e8 kg of an independent computation, in its two or three digits, and the
+    mean drift of the fixed barge in short waves from 4824 panels (both in docs/barge.md)."""
+    job = parse_job(
+        {
+            "geometry": {"hull": {"kind": "barge", "length": 240, "breadth": 46, "draft": 10}, "panel_size": 4.4},
+            "water": {"gravity": 9.807},
+            "body": {"centre_of_gravity": [0, 0, 5], "radii_of_gyration": [26, 60, 60]},
+        },
+        compute=False,
+    )
+    shape = wet(job, prepare(job, lambda _: (b"", "")))
+    headings = np.radians([0.0, 90.0])
+    solver = FrequencySolver(shape, headings)
+    expected = {0.2: (0.63, 4.0, 151), 0.4: (0.81, 2.26, 151), 0.6: (0.54, 1.65, 152), 0.8: (0.21, 1.68, 154)}
+    for omega, values in expected.items():
+        found = np.diag(solver.solve(omega, nothing).added_mass)[1:4] / 1.1e8
+        assert found == pytest.approx(values, rel=0.02, abs=0.007), omega  # sway at 0.8 is known to 0.005 only
+    waves = solver.solve(1.2, nothing).waves
+    assert waves is not None
+    drift = mean_drift(waves[:, 6:], headings, 1.2, 1.2**2 / 9.807, math.inf, 1025, 9.807)
+    assert [drift[0, 0], drift[1, 1]] == pytest.approx([220e3, 1204e3], rel=0.02)

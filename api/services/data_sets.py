@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import threading
 from collections.abc import Mapping
 from typing import Any
 
@@ -21,6 +22,8 @@ from store.sources import PinnedSource
 
 from ..context import Context
 from ..schemas import DataSetDetail, DataSetInfo
+
+_reading = threading.BoundedSemaphore(2)  # uploads that are read at a time, each in some times its size of memory
 
 
 def harmless(name: str) -> str:
@@ -42,14 +45,20 @@ def add(
         raise _fault("file", f"{size} bytes; allowed: at most {context.settings.max_data_bytes}")
     options = conventions(form or {})
     try:
-        found = hydrodynamics.unpacked({harmless(key) or "data": payload for key, payload in files.items()})
-        data, filename, payload = _stored({harmless(key) or "data": part for key, part in found.items()}, options)
-        summary = data.describe()
+        with _reading:
+            return _read_and_save(context, scope, files, name, options)
     except DataError as error:
         raise _fault("file", str(error)) from None
+
+
+def _read_and_save(
+    context: Context, scope: Scope, files: Mapping[str, bytes], name: str | None, options: WamitFiles | None
+) -> tuple[DataSet, bool]:
+    found = hydrodynamics.unpacked({harmless(key) or "data": payload for key, payload in files.items()})
+    data, filename, payload = _stored({harmless(key) or "data": part for key, part in found.items()}, options)
     label = harmless(name or "") or filename
     with context.change() as unit:
-        return DataSetRepository(unit.session, scope).save(label, filename, data.content_hash, payload, summary)
+        return DataSetRepository(unit.session, scope).save(label, filename, data.content_hash, payload, data.describe())
 
 
 def conventions(form: Mapping[str, str | None]) -> WamitFiles | None:

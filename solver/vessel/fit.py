@@ -132,8 +132,8 @@ def _below_the_data(case: Case, data: HydrodynamicData, low: float) -> Iterator[
         if share > UNSEEN:
             yield (
                 f"{data.name}: {100 * share:.2g} % of the energy of sea {index + 1} lies below the lowest frequency of the "
-                f"data, {first:.4g} rad/s (threshold {100 * UNSEEN:g} %); forces there go to their long-wave limit; compute lower "
-                f"frequencies"
+                f"data, {first:.4g} rad/s (threshold {100 * UNSEEN:g} %); forces there go to their long-wave limit; "
+                f"compute lower frequencies"
             )
 
 

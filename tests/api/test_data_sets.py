@@ -111,7 +111,7 @@ def cut(parts, name, keep):
         (cut(files(), "t.3", 0.6), "t.3"),
         (files() | {"t.1": files()["t.1"].replace(b"E+0", b"E+*", 1)}, "t.1, line 1"),
         ({name: payload for name, payload in files().items() if name != "t.1"}, "added mass"),
-        ({"a.zip": archive({"x.1": b"\0" * 300_000_000})}, "more than 256 MB"),
+        ({"a.zip": archive({"x.1": b"\0" * 150_000_000})}, "more than 128 MB"),
         ({"a.zip": archive(files())[:-40]}, "damaged"),
         ({"a.zip": archive({f"{k}.txt": b"" for k in range(70)})}, "70 files"),
         (files() | {"u.1": files()["t.1"]}, "2 runs"),

@@ -68,6 +68,17 @@ def test_powers_of_the_length_and_conventions_by_hand():
     assert "periods" in data.provenance["assumed"][0]
 
 
+def test_a_direction_listed_twice_counts_once_and_must_agree():
+    rows = BY_HAND["a.3"].splitlines()
+    again = [row.replace(" 0.0 ", " 360.0 ", 1) for row in rows if row.split()[1] == "0.0"]
+    data = read_wamit(texts(**{"a.3": "\n".join(rows + again)}), OPTIONS)
+    assert np.array_equal(data.excitation, read_wamit(texts(), OPTIONS).excitation)
+    other = again[0].replace(" 2.0 90.0 ", " 3.0 90.0 ").split()
+    again[0] = " ".join([*other[:-1], "3.0"])
+    with pytest.raises(DataError, match="headings 360 and 0 are one direction but their values differ"):
+        read_wamit(texts(**{"a.3": "\n".join(rows + again)}), OPTIONS)
+
+
 def test_dimensional_files_are_taken_as_they_are():
     data = read_wamit(texts(), OPTIONS.model_copy(update={"length": None, "values": "dimensional"}))
     assert np.allclose(data.damping[:, 4, 4], [0.2, 0.4])

@@ -15,7 +15,7 @@ from ...case.vessel import WamitFiles
 from ...outcome import DataError
 
 MAX_FILES = 64
-MAX_SET_BYTES = 256 * 1024 * 1024  # of all files of a set, unpacked
+MAX_SET_BYTES = 128 * 1024 * 1024  # of all files of a set, unpacked
 MANIFEST = "slowdrift.json"
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 

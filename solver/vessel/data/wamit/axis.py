@@ -69,6 +69,17 @@ def headings(table: Table, column: int) -> Array:
     return angle
 
 
+def first_listed(column: Array, printed: Array) -> Array:
+    """Of one direction (column) that is printed in two ways, as -180 and 180, the rows of the first: a mask."""
+    values, first, back = np.unique(printed, return_index=True, return_inverse=True)
+    if values.size == np.unique(column).size:
+        return np.ones(column.shape, dtype=bool)
+    chosen: dict[int, int] = {}
+    for k in np.argsort(first):
+        chosen.setdefault(int(column[first[k]]), int(k))
+    return np.isin(back, list(chosen.values()))
+
+
 def match(wanted: Array, have: Array) -> Array:
     """Index into `have` of each of `wanted`, -1 where none is within printing accuracy."""
     distance = np.abs(np.asarray(have)[None, :] - wanted[:, None])

@@ -8,7 +8,7 @@ import numpy as np
 
 from ....case.quantities import DOF
 from ....outcome import DataError
-from .axis import Frequencies, frequencies, headings, match, shown, span
+from .axis import Frequencies, first_listed, frequencies, headings, match, shown, span
 from .text import Array, Table, magnitude_agrees, place, whole
 
 ROTATION = np.array([0, 0, 0, 1, 1, 1])
@@ -149,12 +149,9 @@ def positions(table: Table, axis: Frequencies, omega: Array) -> Array:
 def _first_of_the_turn(table: Table, column: Array) -> Array:
     """Rows to keep when one direction is listed twice, as -180 and 180: those of the first. Raises when they differ."""
     printed = table.values[:, 1]
-    first: dict[int, float] = {}
-    for angle, value in zip(column.tolist(), printed.tolist(), strict=True):
-        first.setdefault(angle, value)
-    keep = printed == np.array([first[angle] for angle in column.tolist()])
+    keep = first_listed(column, printed)
     for other in np.unique(printed[~keep]):
-        twin = first[int(column[printed == other][0])]
+        twin = printed[keep & (column == column[printed == other][0])][0]
         a, b = table.values[printed == other], table.values[printed == twin]
         same = a.shape == b.shape and bool(
             np.allclose(a[:, 5:7], b[:, 5:7], rtol=1e-3, atol=1e-4 * np.abs(b[:, 3]).max())
@@ -162,7 +159,7 @@ def _first_of_the_turn(table: Table, column: Array) -> Array:
         if not same:
             row = int(np.flatnonzero(printed == other)[0])
             raise table.fault(row, f"headings {other:g} and {twin:g} are one direction but their values differ")
-    return np.asarray(keep)
+    return keep
 
 
 def read_stiffness(table: Table, scale: Scale) -> tuple[Array, tuple[str, ...]]:

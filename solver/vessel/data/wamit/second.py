@@ -7,7 +7,7 @@ import numpy as np
 from ....case.quantities import DOF
 from ....outcome import DataError
 from ..qtf import QTF
-from .axis import Frequencies, frequencies, headings, match, shown, span
+from .axis import Frequencies, first_listed, frequencies, headings, match, shown, span
 from .first import positions
 from .text import Array, Table, magnitude_agrees, place, whole
 
@@ -36,7 +36,7 @@ def read_mean_drift(table: Table, periods: bool, factor: Array, omega: Array) ->
         raise table.fault(0, "the first column holds 0 or -1; the mean drift exists at finite frequencies only")
     where = positions(table, axis, omega)
     angles, column = np.unique(beta, return_inverse=True)
-    first = _first_listed(column, table.values[:, 1])
+    first = first_listed(column, table.values[:, 1])
     kept = Table(table.name, table.values[first], table.lines[first])
     cell = (where[axis.column] * angles.size + column) * 6 + mode
     rows = place(kept, cell[first], (omega.size, angles.size, 6))
@@ -51,14 +51,6 @@ def read_mean_drift(table: Table, periods: bool, factor: Array, omega: Array) ->
         )
     values = np.where(rows < 0, 0.0, kept.values[rows, 6]) * factor
     return angles, values, warnings
-
-
-def _first_listed(column: Array, printed: Array) -> Array:
-    """Of one direction printed twice, as -180 and 180, the rows of the first."""
-    first: dict[int, float] = {}
-    for angle, value in zip(column.tolist(), printed.tolist(), strict=True):
-        first.setdefault(angle, value)
-    return np.asarray(printed == np.array([first[angle] for angle in column.tolist()]))
 
 
 def pairs_are_periods(table: Table, omega: Array) -> bool:
@@ -88,7 +80,7 @@ def read_qtf(table: Table, periods: bool, conjugate: bool, factor: Array) -> QTF
     magnitude_agrees(table, 5, 7, 8)
     beta = np.concatenate([headings(table, 2), headings(table, 3)])
     _, column = np.unique(beta, return_inverse=True)
-    listed = _first_listed(column, table.values[:, 2:4].T.ravel()).reshape(2, -1).all(axis=0)
+    listed = first_listed(column, table.values[:, 2:4].T.ravel()).reshape(2, -1).all(axis=0)
     table = Table(table.name, table.values[listed], table.lines[listed])
     n = len(table.lines)
     both = Table(table.name, np.concatenate([table.values[:, [0]], table.values[:, [1]]]), np.tile(table.lines, 2))

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 
-from store.broker import EMBEDDED, INTERACTIVE, QUICK, RUNS, queue_name
+from store.broker import EMBEDDED, HYDRODYNAMICS, INTERACTIVE, QUICK, RUNS, queue_name
+
+from . import hydrodynamics
 
 QUICK_POLL_SECONDS = 0.05
 
@@ -22,6 +24,8 @@ def run_worker(queue: str = RUNS, concurrency: int = 1) -> None:
         os.environ.setdefault(name, "1")
     if queue == INTERACTIVE and app.conf.broker_url.startswith(EMBEDDED):
         app.conf.broker_transport_options |= {"polling_interval": QUICK_POLL_SECONDS}  # somebody waits for the answer
+    if queue == HYDRODYNAMICS:
+        hydrodynamics.warm_up(settings.data_dir)
     queues = [queue]
     if queue == INTERACTIVE:
         queues, concurrency = [INTERACTIVE, QUICK], max(2, concurrency)

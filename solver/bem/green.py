@@ -6,6 +6,7 @@ kept short: a worker can renew its lease, report and stop between them.
 
 from __future__ import annotations
 
+import logging
 import math
 import time
 from collections.abc import Callable
@@ -20,6 +21,7 @@ from .symmetry import Fundamental
 Array = np.ndarray
 PIECE_SECONDS = 0.4
 FIRST_PIECE = 100_000  # entries; later ones are sized by the time it took
+SINGULARITIES = "low_freq"  # taken out of the Green function so that panels in the still water can be
 SHARP = math.radians(40.0)  # between panels: more is an edge of the hull, less is its curvature
 SHALLOWEST = 0.15  # k·h below which Capytaine has no Green function of finite depth
 
@@ -40,7 +42,16 @@ def load_capytaine() -> Any:
         raise DataError(
             "boundary elements need Capytaine, which is not installed here; install slowdrift[bem]"
         ) from None
+    logging.getLogger("capytaine").setLevel(logging.WARNING)
     return capytaine
+
+
+def make_tables() -> None:
+    """Make the tables that Capytaine interpolates in, or load those of a former start; the first time takes a while.
+
+    Python's lock is held meanwhile, so a worker does it before it has a task to keep alive.
+    """
+    load_capytaine().Delhommeau(gf_singularities=SINGULARITIES)
 
 
 def capytaine_version() -> str:
@@ -57,7 +68,7 @@ class Green:
     def __init__(self, shape: Fundamental, depth: float, surface: bool, closure: Array | None = None):
         capytaine = load_capytaine()
         self.depth = depth
-        self._function = capytaine.Delhommeau(gf_singularities="low_freq")
+        self._function = capytaine.Delhommeau(gf_singularities=SINGULARITIES)
         self._sources = capytaine.Mesh(shape.part.vertices, _as_capytaine(shape.part))
         whole = shape.whole()
         self._centres, self._normals = whole.centres, whole.normals

@@ -27,7 +27,7 @@ Array = np.ndarray
 LID_FACTOR = 1.5
 LID_START = 0.8  # of the first irregular frequency
 FIRST_ZERO = 2.404826  # of the Bessel function J0
-BASE_MB = 250.0  # of a process with Capytaine and its tables, before any matrix
+BASE_MB = 400.0  # of a worker with Capytaine and its tables, before any matrix
 ENTRY_SECONDS, FINITE_DEPTH, FLOPS = 4.5e-7, 4.0, 5e9  # of a Green function in deep water; dearer in finite depth
 BALANCE = 0.1  # of the scattered power: beyond it, energy is out of balance by more than a mesh should be
 

@@ -49,7 +49,7 @@ def test_estimate_counts_what_will_be_done() -> None:
 @pytest.mark.parametrize(
     ("change", "memory", "field", "words"),
     [
-        ({"geometry": {**SMALL["geometry"], "panel_size": 2}}, 260, "geometry", "allowed: 260 MB, about"),
+        ({"geometry": {**SMALL["geometry"], "panel_size": 2}}, 410, "geometry", "allowed: 410 MB, about"),
         ({"water": {"depth": 20}, "frequencies": [0.01, 0.5]}, 3000, "frequencies", "at least 0.105 rad/s"),
         ({"geometry": {"mesh": "hull.gdf"}, "water": {"depth": 7}}, 3000, "water.depth", "draught of 8 m"),
     ],

@@ -36,7 +36,7 @@ JOB: dict[str, Any] = {
 @pytest.fixture
 def service_settings(tmp_path: Path, migrated: Path) -> Settings:  # noqa: F811
     shutil.copy(migrated, tmp_path / "slowdrift.db")
-    return Settings(data_dir=tmp_path, bem_memory_mb=400)
+    return Settings(data_dir=tmp_path, bem_memory_mb=550)
 
 
 @pytest.fixture
@@ -218,3 +218,28 @@ def test_the_command_line_does_the_same(tmp_path: Path, capsys: pytest.CaptureFi
     job.write_text("name: a\ngeometry: {hull: {kind: barge, length: 1}}\n")
     assert main(["bem", str(job), "--out", str(out)]) == 2
     assert "geometry.hull.draft (line 2)" in capsys.readouterr().err
+
+
+def test_a_worker_makes_its_tables_before_it_takes_a_task(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Making them holds Python's lock, a minute and more on a busy machine: a lease would run out."""
+    from solver.bem import green
+    from solver.outcome import DataError
+    from worker import hydrodynamics, main
+
+    order: list[str] = []
+    monkeypatch.setattr(hydrodynamics, "warm_up", lambda folder: order.append("tables"))
+    monkeypatch.setattr("worker.app.app.worker_main", lambda arguments: order.append("worker"))
+    main.run_worker("hydrodynamics")
+    main.run_worker("runs")
+    assert order == ["tables", "worker", "worker"]
+    monkeypatch.undo()
+
+    def missing() -> None:
+        raise DataError("boundary elements need Capytaine, which is not installed here; install slowdrift[bem]")
+
+    monkeypatch.setenv("CAPYTAINE_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(green, "make_tables", missing)
+    hydrodynamics.warm_up(tmp_path)
+    assert "install slowdrift[bem]" in caplog.text

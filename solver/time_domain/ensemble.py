@@ -18,12 +18,12 @@ from ..outcome import Cancelled, CaseError, FieldError, NotConverged
 from ..statics.solve import StaticState
 from .facing import facing, turn_back
 from .lanes import make_body, make_lines, make_memory, make_state, make_work, padded_shapes
+from .pace import stride
 from .scheme import SCHEMES
 from .sea import Components, VesselLoads, WaterTables, components
 
 Array = np.ndarray
 LANES_WANTED = 8
-BLOCK_SECONDS = 60.0  # of simulated time between progress reports
 STIFFEST_BED = 36.0  # rad a step of a node on its seabed spring: at 41 tension was seen to go wrong
 LONGEST_SNAP_STEP = 0.1  # s: tested with a snapping riser, 2 % at 0.1 s, 20 % at 0.2 s
 REFRESH = 8  # steps between renewals of Newton's matrix
@@ -112,7 +112,11 @@ class Block:
         self.base = np.ascontiguousarray(np.stack([self.state.x[-1], self._bottoms()]))
         self.step = 0
         N, Q, n = self.work.length.shape[0], S * L, run.time.outputs
-        self.out = (np.zeros((n, S, 6)), np.zeros((n, N, Q), dtype=np.float32), np.zeros((n, 2, Q)))
+        self.out: tuple[Array, Array, Array] = (
+            np.zeros((n, S, 6)),
+            np.zeros((n, N, Q), dtype=np.float32),
+            np.zeros((n, 2, Q)),
+        )
         self.seen = np.stack([np.full((N, Q), np.inf), np.full((N, Q), -np.inf)])
         self.counts = np.zeros(3, dtype=np.int64)
         self._mark()
@@ -173,14 +177,15 @@ class Block:
 
     def arrays(self) -> dict[str, Array]:
         """Everything needed to go on elsewhere, as of the last stride; output after that is written again."""
-        return {**self.mark, "out/vessel": self.out[0], "out/tension": self.out[1], "out/ends": self.out[2]}
+        vessel, tension, ends = (values[: self.mark["counts"][2]] for values in self.out)
+        return {**self.mark, "out/vessel": vessel, "out/tension": tension, "out/ends": ends}
 
     def restore(self, arrays: dict[str, Array]) -> None:
         self.state = State(*(np.ascontiguousarray(arrays[f"state/{name}"]) for name in State._fields))
         self.step = int(arrays["step"])
         self.seen[:], self.counts[:] = arrays["seen"], arrays["counts"]
-        vessel, tension, ends = self.out
-        vessel[:], tension[:], ends[:] = arrays["out/vessel"], arrays["out/tension"], arrays["out/ends"]
+        for values, name in zip(self.out, ("vessel", "tension", "ends"), strict=True):
+            values[: self.counts[2]] = arrays[f"out/{name}"]
         self._mark()
 
 
@@ -250,7 +255,7 @@ def march_ensemble(
         blocks[index] = block
         while not block.done:
             between()
-            block.go(_stride(run))
+            block.go(stride(run.time.h, block.state.x.shape[0], block.state.x.shape[2], REFRESH))
         block.release()
 
     if threads <= 1 or len(groups) == 1:
@@ -288,11 +293,6 @@ def _in_threads(
             for future in futures:
                 future.cancel()
             raise
-
-
-def _stride(run: Run) -> int:
-    """Steps between progress reports: whole renewals of Newton's matrix, so that a resumed run begins with one."""
-    return max(int(BLOCK_SECONDS / run.time.h) // REFRESH, 1) * REFRESH
 
 
 def _save(blocks: dict[int, Block]) -> bytes:

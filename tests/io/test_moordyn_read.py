@@ -239,6 +239,14 @@ def test_bytes_of_any_kind_never_break_the_reader(payload: bytes | str) -> None:
         read_deck(payload)
 
 
+def test_control_characters_of_a_deck_do_not_reach_the_text_of_the_case() -> None:
+    text = DECK.replace("a semi", "a\x1b\x07 semi").replace("0.001 dtM", "1 \x1bfoo - x\n2 ba\x85r - y\n0.001 dtM")
+    found = read_deck(text, VESSEL)
+    assert found.case is not None
+    assert load_case(found.yaml) == found.case
+    assert found.case.name.isprintable()
+
+
 def test_the_public_deck_of_volturnus() -> None:
     text = (volturnus() / "umainesemi_MoorDyn.dat").read_bytes()
     case = read_deck(text, VESSEL).case

@@ -16,7 +16,7 @@ from ...case.text import read_text
 from ...case.vessel import Vessel
 from ...outcome import CaseError, FieldError
 from .deck import Deck, Faults, parse_deck, parse_number
-from .report import Report
+from .report import Report, printable
 from .system import Chain, Point, System, build_system
 
 SOIL, BED_DAMPING = 3.0e6, 3.0e5  # MoorDyn's defaults of kBot [Pa/m] and cBot [Pa s/m]
@@ -65,7 +65,7 @@ def read_deck(text: str | bytes, base: str | bytes | None = None, name: str | No
     kept = _base(base)
     data: dict[str, Any] = {
         "slowdrift": 1,
-        "name": name or kept.get("name") or deck.title.strip("- ")[:200] or "MoorDyn deck",
+        "name": name or kept.get("name") or printable(deck.title).strip("- ")[:200] or "MoorDyn deck",
     }
     if "description" in kept:
         data["description"] = kept["description"]

@@ -25,4 +25,9 @@ class Report:
         """The report as lines of comment, for the head of a written file."""
         titles = {"read": "Read", "assumed": "Assumed", "dropped": "Left out", "missing": "To be filled in"}
         lines = [f"{mark}{titles[key]}: {text}" for key, texts in self.as_dict().items() for text in texts]
-        return "".join(" ".join(line.split()) + "\n" for line in lines)
+        return "".join(printable(line) + "\n" for line in lines)
+
+
+def printable(text: str) -> str:
+    """On one line, without control characters, which no YAML may hold."""
+    return "".join(letter if letter.isprintable() else "?" for letter in " ".join(text.split()))

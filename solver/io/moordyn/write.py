@@ -10,7 +10,7 @@ from typing import Any
 from ...case import Case, end_point
 from ...case.lines import End, Line, LineType
 from ...outcome import CaseError, FieldError
-from .report import Report
+from .report import Report, printable
 
 Xyz = tuple[float, float, float]
 DEFAULT_SOIL = 100e3  # N/m3, of a case that says nothing about its bed
@@ -110,7 +110,7 @@ def _heading(words: str) -> str:
 
 
 def _plain(text: str) -> str:
-    return " ".join(text.split()).lstrip("- ") or "case"
+    return printable(text).lstrip("- ") or "case"
 
 
 def _word(name: str) -> str:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solver.case import parse_case
-from solver.outcome import CaseError
+from solver.outcome import CaseError, DataError
 from solver.vessel.data import QTF
 from solver.vessel.fit import fit
 
@@ -81,6 +81,19 @@ def test_a_regular_wave_outside_is_refused(data):
 
 
 # --- interpolation of the QTF
+
+
+def test_a_qtf_with_gaps_of_its_own_is_refused():
+    qtf = sets.qtf([0.3, 0.5, 0.8], [0.0], cross=())
+    for change, text in (
+        (np.s_[0, 1, 2, 4], "not finite"), (np.s_[0, 1, 2], "give both"),
+    ):  # fmt: skip
+        values = qtf.values.copy()
+        values[change] = np.nan
+        with pytest.raises(DataError, match=text):
+            dataclasses.replace(qtf, values=values)
+    with pytest.raises(DataError, match="pair of headings"):
+        dataclasses.replace(qtf, cross={(0, 1): np.zeros((2, 2, 6), complex)})
 
 
 def test_the_qtf_is_exact_where_it_is_bilinear():

@@ -1,10 +1,15 @@
 """Hydrodynamic data as NetCDF in Capytaine's layout and back: nothing is lost, and other programs read it."""
 
+import contextlib
 import io
+import json
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
+from solver.outcome import DataError
 from solver.vessel.data import read_bytes
 from solver.vessel.data.layout import dump_netcdf
 from solver.vessel.data.wamit import read_wamit
@@ -17,6 +22,9 @@ FIELDS = (
     "hydrostatic_stiffness", "centre_of_mass", "reference_point", "motions", "density", "gravity", "depth",
     "drift_omega", "drift_headings", "excitation_zero", "displaced_volume", "reference_known",
 )  # fmt: skip
+
+
+WRITTEN = dump_netcdf(sets.whole())
 
 
 def equal(a, b):
@@ -59,3 +67,36 @@ def test_xarray_reads_it_with_names_and_units():
     assert [str(name, "ascii").strip() for name in dataset.influenced_dof.values][:2] == ["Surge", "Sway"]
     assert dataset.omega.attrs["units"] == "rad/s"
     assert np.array_equal(dataset.excitation_force.values[1, 1:-1], -data.excitation.imag)
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.data())
+def test_spoilt_files_are_refused_or_read(draw):
+    spoilt = bytearray(WRITTEN)
+    for _ in range(draw.draw(st.integers(1, 8))):
+        spoilt[draw.draw(st.integers(0, len(spoilt) - 1))] = draw.draw(st.integers(0, 255))
+    with contextlib.suppress(DataError):
+        data = read_bytes(bytes(spoilt), "f.nc")
+        json.dumps(data.describe(), allow_nan=False)
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "text"),
+    [
+        ("qtf_omega", lambda values: values[::-1], "must rise"),
+        ("qtf_pair_headings", lambda values: values + 5, "two positions"),
+        ("difference_qtf", lambda values: values * np.array([1, 0.5])[:, None, None, None, None] + 1.0, None),
+        ("mean_drift_force", lambda values: values * np.nan, "not finite"),
+    ],
+)
+def test_parts_that_do_not_fit_are_named(name, change, text, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    dataset = xarray.open_dataset(io.BytesIO(WRITTEN), engine="scipy").load()
+    item = dataset[name]
+    dataset[name] = (item.dims, change(item.values))
+    payload = bytes(dataset.to_netcdf(engine="scipy"))
+    if text is None:
+        assert not np.array_equal(read_bytes(payload, "f.nc").qtf.values, sets.whole().qtf.values)
+    else:
+        with pytest.raises(DataError, match=text):
+            read_bytes(payload, "f.nc")

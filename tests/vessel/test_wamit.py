@@ -5,12 +5,15 @@ import dataclasses
 import numpy as np
 import pytest
 
+from solver.case.vessel import Vessel
 from solver.outcome import DataError
-from solver.vessel.data import FileSource, read_files
+from solver.vessel.data import FileSource, read_bytes, read_files
 from solver.vessel.data.bundle import pack
+from solver.vessel.data.layout import dump_netcdf
 from solver.vessel.data.wamit import conventions_of, read_wamit, write_wamit
 from solver.vessel.drift import Drift
-from solver.vessel.rigid import turning
+from solver.vessel.quality import quality
+from solver.vessel.rigid import about_cg, hydrostatic_stiffness, turning
 
 from . import wamit_sets as sets
 
@@ -352,6 +355,12 @@ def test_the_public_set_reads_and_comes_back():
     # Froude-Krylov and inertia of a long wave: heave near C33, surge a quarter period ahead of the crest
     assert abs(data.excitation[0, 0, 2]) == pytest.approx(data.hydrostatic_stiffness[2, 2], rel=0.03)
     assert np.degrees(np.angle(data.excitation[0, 0, 0])) == pytest.approx(90.0, abs=0.5)
+    assert read_bytes(dump_netcdf(data), "v.nc").qtf.values.tobytes() == data.qtf.values.tobytes()
+    doubts = {check.name: check.state for check in quality(data, 0.2, 1.2)}
+    assert {name for name, state in doubts.items() if state == "warning"} == {
+        "spacing"
+    }  # heave damping has a sharp peak
+    assert doubts["haskind"] == doubts["kramers-kronig"] == doubts["long-wave"] == "ok"
     again = write_wamit(data, "umainesemi")
     before, after = printed(files), printed(again)
     for kind in ("umainesemi.1", "umainesemi.3", "umainesemi.hst"):
@@ -372,6 +381,25 @@ def by_index(rows):
         return (*head, *key[len(head) :])
 
     return rows if not any(len(key) > 2 for key in rows) else {short(key): words for key, words in rows.items()}
+
+
+def test_the_reference_point_moves_to_the_centre_of_gravity():
+    """Files about another point, said in the case, are the same body; the weight in the .hst moves with it."""
+    data = dataclasses.replace(sets.whole(), reference_known=True)
+    point, vessel = np.array([3.0, -1.0, 4.0]), {"mass": 1e6, "centre_of_gravity": (1.0, 0.5, -2.0)}
+    vessel |= {"radii_of_gyration": (5.0, 5.0, 5.0), "hydrostatics": {"displaced_volume": 5000.0}}
+    moved, found = data.moved_to(point), []
+    for one, where in ((data, (0.0, 0.0, 0.0)), (moved, tuple(point))):
+        read = read_wamit(write_wamit(one, "t", 10.0), conventions_of(one, 10.0))
+        body = Vessel.model_validate(vessel | {"hydrodynamics": {"data": "t", "reference_point": where}})
+        found.append((about_cg(read, body), hydrostatic_stiffness(body, read)))
+    (first, k_first), (second, k_second) = found
+    for field in ("added_mass", "damping", "excitation", "mean_drift"):
+        ours, theirs = getattr(first, field), getattr(second, field)
+        assert np.allclose(ours, theirs, rtol=1e-4, atol=3e-6 * np.abs(theirs).max()), field
+    assert np.allclose(k_first, k_second, rtol=1e-5, atol=1e-5 * np.abs(k_first).max())
+    heel = data.moved_to(np.array(vessel["centre_of_gravity"])).hydrostatic_stiffness[3, 3]
+    assert k_first[3, 3] == pytest.approx(heel + 1025 * 9.807 * 5000 * (2.0 + 2.0), rel=1e-5)
 
 
 # --- where sets come from

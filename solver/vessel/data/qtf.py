@@ -33,6 +33,17 @@ class QTF:
         n, h = self.omega.size, self.headings.size
         if self.values.shape != (h, n, n, 6) or n < 2:
             raise DataError(f"{self.name}: the QTF has shape {self.values.shape}; expected {(h, n, n, 6)}, N >= 2")
+        for table in (*self.values, *self.cross.values()):
+            if table.shape != (n, n, 6):
+                raise DataError(f"{self.name}: a pair of headings has shape {table.shape}; expected {(n, n, 6)}")
+            unknown = np.isnan(table)
+            if np.isinf(table).any() or np.any(unknown.any(axis=2) != unknown.all(axis=2)):
+                raise DataError(
+                    f"{self.name}: the QTF holds values that are not finite; a pair that was not computed is NaN in all modes"
+                )
+        for table in self.values:
+            if np.any(np.isnan(table[..., 0]) != np.isnan(table[..., 0].T)):
+                raise DataError(f"{self.name}: some pairs (m, n) of the QTF are there and (n, m) are not; give both")
         size, gap = self.asymmetry()
         size = np.repeat(size.reshape(2, 3).max(axis=1), 3)  # what vanishes by symmetry is round-off of the others
         if np.any(gap > HERMITIAN * size):

@@ -1,15 +1,17 @@
 # Slowdrift in one image: `slowdrift serve`, `slowdrift worker`, `slowdrift migrate` are its commands (docker-compose.yml).
 FROM python:3.12-slim AS build
 WORKDIR /src
-COPY pyproject.toml README.md ./
+COPY pyproject.toml README.md requirements.lock ./
 COPY solver solver
 COPY store store
 COPY worker worker
 COPY api api
 COPY frontend frontend
 COPY cli cli
+COPY slowdrift_client slowdrift_client
 COPY examples examples
-RUN python -m venv /opt/slowdrift && /opt/slowdrift/bin/pip install --no-cache-dir .
+RUN python -m venv /opt/slowdrift && /opt/slowdrift/bin/pip install --no-cache-dir -r requirements.lock && \
+    /opt/slowdrift/bin/pip install --no-cache-dir --no-deps --no-build-isolation .
 
 FROM python:3.12-slim
 RUN useradd --create-home --uid 10001 slowdrift && install -d -o slowdrift /data /cache
@@ -22,7 +24,7 @@ ENV PATH=/opt/slowdrift/bin:$PATH \
     SLOWDRIFT_DATA_DIR=/data
 USER slowdrift
 # the kernels are compiled once, into the image
-RUN python -c "import solver.run; solver.run.warm_up()"
+RUN python -c "import solver.run as run; run.warm_up(); run.warm_up_time_domain()"
 WORKDIR /data
 EXPOSE 8000
 CMD ["slowdrift", "serve", "--host", "0.0.0.0", "--allow-no-login", "--log", "here"]

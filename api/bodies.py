@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 from fastapi import Depends, Request
 from fastapi.exceptions import RequestValidationError
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from solver.case.text import MAX_BYTES
 from solver.outcome import CaseError, FieldError
 
 from .schemas import RunRequest
+from .study_schemas import StudyRequest
+
+Model = TypeVar("Model", bound=BaseModel)
 
 DRAIN_BYTES = 64_000_000
 """A body is read to here, and thrown away beyond what a case may have, so that the client gets its answer."""
@@ -25,22 +29,34 @@ class Body:
     is_json: bool
 
 
+Endpoint = TypeVar("Endpoint", bound=Callable[..., Any])
+
+
+def takes(most: int) -> Callable[[Endpoint], Endpoint]:
+    """Says how many bytes a route reads where a case's are too few."""
+
+    def mark(endpoint: Endpoint) -> Endpoint:
+        endpoint.most_bytes = most  # type: ignore[attr-defined]
+        return endpoint
+
+    return mark
+
+
 async def read_body(request: Request) -> Body:
+    most = getattr(request.scope.get("endpoint"), "most_bytes", 2 * MAX_BYTES)
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     pieces: list[bytes] = []
     size = 0
     async for piece in request.stream():
         size += len(piece)
-        if size <= 2 * MAX_BYTES:
+        if size <= most:
             pieces.append(piece)
         elif size > DRAIN_BYTES:
             break
         else:
             pieces.clear()
-    if size > 2 * MAX_BYTES:
-        raise CaseError(
-            [FieldError((), f"the request has more than {2 * MAX_BYTES} bytes; allowed in a case: {MAX_BYTES}")]
-        )
+    if size > most:
+        raise CaseError([FieldError((), f"the request has more than {most} bytes; allowed in a case: {MAX_BYTES}")])
     return Body(b"".join(pieces), kind == "application/json" or kind.endswith("+json"))
 
 
@@ -72,12 +88,21 @@ def _no_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 async def read_run_request(body: Annotated[Body, Depends(read_body)]) -> RunRequest:
+    return _validated(RunRequest, body)
+
+
+async def read_study_request(body: Annotated[Body, Depends(read_body)]) -> StudyRequest:
+    return _validated(StudyRequest, body)
+
+
+def _validated(model: type[Model], body: Body) -> Model:
     data = read_json(body)
     try:
-        return RunRequest.model_validate(data)
+        return model.model_validate(data)
     except ValidationError as error:
         raise RequestValidationError(error.errors()) from None
 
 
 BodyDep = Annotated[Body, Depends(read_body)]
 RunRequestDep = Annotated[RunRequest, Depends(read_run_request)]
+StudyRequestDep = Annotated[StudyRequest, Depends(read_study_request)]

@@ -5,16 +5,27 @@
 
 from __future__ import annotations
 
+import logging
 from typing import Any
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi_problem.error import Problem, StatusProblem
 from fastapi_problem.handler import ExceptionHandler, add_exception_handler, new_exception_handler
+from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
 
 from solver.outcome import CaseError, DataError, FieldError, NotConverged, SlowdriftError
-from store.errors import ConflictError, NotFoundError, TooSlowError, UnavailableError
+from store.errors import (
+    ConflictError,
+    ForbiddenError,
+    NotFoundError,
+    SignInError,
+    TooManyError,
+    TooSlowError,
+    UnavailableError,
+)
 
+log = logging.getLogger(__name__)
 DATA = ("vessel", "hydrodynamics", "data")
 
 
@@ -53,11 +64,27 @@ def _request(_: ExceptionHandler, __: Request, error: RequestValidationError) ->
     return field_problem(faults, "The request is not valid.", "request-invalid")
 
 
+def _away(_: ExceptionHandler, __: Request, error: DBAPIError) -> Problem:
+    log.warning("The database did not answer a request: %s", error)
+    detail = "The database cannot be reached or written to now; nothing was changed. Try again in a moment."
+    return Problem("A part of the service is not available.", type_="unavailable", detail=detail, status=503)
+
+
 def _status(status: int, kind: str, title: str) -> Any:
     def handle(_: ExceptionHandler, __: Request, error: SlowdriftError) -> Problem:
         return Problem(title, type_=kind, detail=str(error), status=status)
 
     return handle
+
+
+def _sign_in(_: ExceptionHandler, __: Request, error: SignInError) -> Problem:
+    headers = {"www-authenticate": "Bearer"}
+    return Problem("Nobody is signed in.", type_="sign-in-required", detail=str(error), status=401, headers=headers)
+
+
+def _too_many(_: ExceptionHandler, __: Request, error: TooManyError) -> Problem:
+    headers = {"retry-after": str(error.retry_after)}
+    return Problem("Too many attempts.", type_="too-many", detail=str(error), status=429, headers=headers)
 
 
 def install(app: FastAPI) -> None:
@@ -66,8 +93,13 @@ def install(app: FastAPI) -> None:
         DataError: _data,
         NotConverged: _status(422, "not-converged", "The analysis found no answer."),
         NotFoundError: _status(404, "not-found", "Not found."),
+        SignInError: _sign_in,
+        ForbiddenError: _status(403, "forbidden", "The caller may not do this."),
+        TooManyError: _too_many,
         ConflictError: _status(409, "conflict", "The present state does not allow this."),
         TooSlowError: _status(504, "too-slow", "The answer did not come in time."),
+        OperationalError: _away,
+        InterfaceError: _away,
         UnavailableError: _status(503, "unavailable", "A part of the service is not available."),
     }
     handler = new_exception_handler(
@@ -76,4 +108,5 @@ def install(app: FastAPI) -> None:
         request_validation_handler=_request,
     )
     add_exception_handler(app, handler, generic_swagger_defaults=False)
-    app.add_exception_handler(SlowdriftError, handler)
+    for kind in (SlowdriftError, OperationalError, InterfaceError):
+        app.add_exception_handler(kind, handler)

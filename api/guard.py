@@ -1,18 +1,23 @@
 """What every request passes before a route: the Host it names, the Origin it comes from; and headers on every answer.
 
 Without accounts, whatever a browser on this machine sends is obeyed; so a page from elsewhere must not be able to make
-it send anything (Origin), nor reach us under a name of its own (Host, "DNS rebinding").
+it send anything (Origin), nor reach us under a name of its own (Host, "DNS rebinding"). With accounts, a request that
+changes something by the cookie of a session must also show an Origin of ours, or know the session's CSRF token.
 """
 
 from __future__ import annotations
 
+import hmac
 import json
 from collections.abc import Sequence
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.requests import cookie_parser
 from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from store.tokens import csrf_token
 
 SAFE = ("GET", "HEAD", "OPTIONS")
 HEADERS = {
@@ -21,6 +26,9 @@ HEADERS = {
     "X-Frame-Options": "SAMEORIGIN",
 }
 PROBLEM = "application/problem+json"
+COOKIE, SECURE_COOKIE = "slowdrift", "__Host-slowdrift"
+"""The session's cookie over http and https; a browser takes the latter over https alone, and from this very host."""
+CSRF_HEADER = "x-csrf-token"
 
 
 def _content(status: int, kind: str, title: str) -> bytes:
@@ -45,6 +53,10 @@ class Guard:
                 headers = MutableHeaders(scope=message)
                 for name, value in HEADERS.items():
                     headers.setdefault(name, value)
+                if scope["path"].startswith("/api/"):  # a browser may be somebody else's tomorrow: ask again each time
+                    headers.setdefault("Cache-Control", "private, no-cache")
+                    headers.add_vary_header("Cookie")
+                    headers.add_vary_header("Authorization")
                 if message["status"] == 413 and headers.get("content-type") != PROBLEM:
                     headers["content-type"] = PROBLEM  # the framework's own is bare text
                     headers["content-length"] = str(len(TOO_LARGE))
@@ -58,17 +70,33 @@ class Guard:
     def _refusal(self, method: str, headers: Headers) -> Response | None:
         host = headers.get("host", "")
         if "*" not in self.allowed and _name(host) not in self.allowed:
-            return _problem(400, "host-unknown", "This server does not answer to that name.")
+            return problem(400, "host-unknown", "This server does not answer to that name.")
         origin = headers.get("origin")
-        if method not in SAFE and origin is not None and urlsplit(origin).netloc != host:
-            return _problem(403, "origin-foreign", "Pages of another origin may not change anything here.")
+        if method not in SAFE and origin is not None and _netloc(origin) != host:
+            return problem(403, "origin-foreign", "Pages of another origin may not change anything here.")
+        by_key = headers.get("authorization", "").lower().startswith("bearer ")
+        if method not in SAFE and origin is None and not by_key:
+            return _csrf(session_token(headers.get("cookie", "")), headers.get(CSRF_HEADER, ""))
         return None
+
+
+def _csrf(session: str, shown: str) -> Response | None:
+    if not session or hmac.compare_digest(csrf_token(session).encode(), shown.encode()):
+        return None
+    title = "A change by cookie needs the header Origin, or X-CSRF-Token with the token that GET /me tells."
+    return problem(403, "csrf", title)
+
+
+def session_token(cookies: str) -> str:
+    """The session's token in a Cookie header; empty where there is none."""
+    jar = cookie_parser(cookies)
+    return jar.get(SECURE_COOKIE) or jar.get(COOKIE) or ""
 
 
 def _null_byte(scope: Scope) -> Response | None:
     """No id or name of ours holds one, and a database may choke on it."""
     if "\0" in scope["path"] or b"%00" in scope["query_string"]:
-        return _problem(400, "request-invalid", "The address holds a null byte.")
+        return problem(400, "request-invalid", "The address holds a null byte.")
     return None
 
 
@@ -79,5 +107,12 @@ def _name(host: str) -> str:
         return ""
 
 
-def _problem(status: int, kind: str, title: str) -> Response:
+def _netloc(origin: str) -> str:
+    try:
+        return urlsplit(origin).netloc
+    except ValueError:
+        return ""
+
+
+def problem(status: int, kind: str, title: str) -> Response:
     return Response(_content(status, kind, title), status, media_type=PROBLEM)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
-from fastapi import APIRouter, FastAPI
-from starlette.middleware.gzip import GZipMiddleware
+from fastapi import APIRouter, Depends, FastAPI
 from starlette.types import ASGIApp
+from starlette_compress import CompressMiddleware
 
 from store.database import Database
 from store.doorbell import Doorbell
@@ -15,9 +15,32 @@ from store.reconcile import Reconciler
 from store.settings import Settings
 
 from . import errors
+from .access import admit
+from .attempts import Attempts
 from .context import Context
+from .doorkeeper import Doorkeeper
+from .etag import ETags
 from .guard import Guard
-from .routes import cases, catalogue, data_sets, events, health, runs
+from .metrics import Meter, Metrics
+from .rates import Rates
+from .routes import (
+    auth,
+    cases,
+    catalogue,
+    data_sets,
+    events,
+    exports,
+    health,
+    hydrodynamics,
+    imports,
+    moordyn,
+    queue,
+    runs,
+    shares,
+    studies,
+    teams,
+    users,
+)
 from .routes.common import problems
 
 BASE = "/api/v1"
@@ -28,7 +51,8 @@ class Guarded(FastAPI):
 
     def build_middleware_stack(self) -> ASGIApp:
         context: Context = self.state.context
-        return Guard(super().build_middleware_stack(), context.settings.hosts)
+        inner = Doorkeeper(super().build_middleware_stack(), context, BASE)
+        return Meter(Guard(inner, context.settings.hosts), self.state.metrics)
 
 
 def create_app(settings: Settings | None = None, reconcile: bool = True) -> FastAPI:
@@ -57,11 +81,32 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
         lifespan=lifespan,
     )
     app.state.context = context
+    app.state.attempts = Attempts(settings)
     errors.install(app)
-    app.add_middleware(GZipMiddleware, minimum_size=2000, compresslevel=5)
+    app.state.metrics = Metrics(context.database)
+    app.add_middleware(ETags)
+    app.add_middleware(CompressMiddleware, minimum_size=2000, zstd_level=3, brotli=False, gzip_level=5)
+    app.add_middleware(Rates, per_minute=settings.rate_per_minute)
     app.include_router(health.router)
-    base = APIRouter(prefix=BASE, responses=problems(400, 413, 422))
-    for module in (catalogue, cases, data_sets, events, runs):
+    base = APIRouter(prefix=BASE, responses=problems(400, 401, 403, 404, 413, 422), dependencies=[Depends(admit)])
+    for module in (
+        auth,
+        cases,
+        catalogue,
+        data_sets,
+        events,
+        exports,
+        hydrodynamics,
+        imports,
+        moordyn,
+        queue,
+        runs,
+        shares,
+        studies,
+        teams,
+        users,
+    ):
         base.include_router(module.router)
+    base.include_router(shares.opened)
     app.include_router(base)
     return app

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from datetime import datetime
-from typing import Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -53,27 +53,106 @@ class DataSetInfo(BaseModel):
     created_at: datetime = Field(examples=[TIME])
 
 
+class QualityCheck(BaseModel):
+    """One check of hydrodynamic data: `message` says value, threshold and remedy."""
+
+    name: str = Field(examples=["reciprocity"])
+    state: Literal["ok", "warning", "skipped"]
+    message: str
+    value: float | None
+    threshold: float | None
+
+
+class DataSetDetail(DataSetInfo):
+    checks: list[QualityCheck]
+
+
+class Series(BaseModel):
+    """One curve of hydrodynamic data; `imaginary` beside the real `values` of a complex one."""
+
+    i: int
+    j: int | None = None
+    heading_deg: float | None = None
+    values: list[Any]
+    imaginary: list[Any] | None = None
+    zero: float | None = Field(None, description="the limit at zero frequency")
+    infinite: float | None = Field(None, description="the limit at infinite frequency")
+
+
+class Coefficients(BaseModel):
+    """Hydrodynamic data to draw: over `omega` [rad/s], or over `time` [s]."""
+
+    quantity: str
+    unit: str = Field(description="of forces, of couplings with moments, of moments")
+    omega: list[float] | None = None
+    time: list[float] | None = None
+    series: list[Series]
+
+
+class Stiffness(BaseModel):
+    """Hydrostatic stiffness about `reference_point`, with the weight of the computation at `centre_of_mass`."""
+
+    hydrostatic_stiffness: list[list[float]] | None
+    reference_point: list[float] | None
+    centre_of_mass: list[float] | None
+
+
 class DataSetPage(BaseModel):
     items: list[DataSetInfo]
     next_cursor: str | None
 
 
-class RunRequest(BaseModel):
+Tag = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9 ._:/-]{0,49}$")]
+Label = Annotated[str, Field(max_length=200, pattern=r"^[^\x00-\x1f\x7f]*$")]
+Priority = Literal["interactive", "normal", "batch"]
+
+
+class Chosen(BaseModel):
+    """A case, by id or in full, and what is asked of it: exactly one of `case_id`, `case`, `yaml`."""
+
+    case_id: str | None = Field(None, pattern=r"^[0-9A-Za-z-]{1,64}$")
+    case: dict[str, Any] | None = None
+    yaml: str | None = None
+    analyses: list[str] | None = Field(None, max_length=10, description="a choice of the case's; all when left out")
+    name: Label = Field("", description="shown beside the case's name")
+    tags: list[Tag] = Field([], max_length=20)
+    priority: Priority | None = Field(None, description="which tasks go first; chosen by size when left out")
+
+
+class RunRequest(Chosen):
     """Exactly one of `case_id`, `case`, `yaml`."""
 
     model_config = ConfigDict(
         extra="forbid",
         json_schema_extra={"examples": [{"case_id": ID, "analyses": ["statics", "frequency_domain"]}]},
     )
-    case_id: str | None = Field(None, pattern=r"^[0-9A-Za-z-]{1,64}$")
-    case: dict[str, Any] | None = None
-    yaml: str | None = None
-    analyses: list[str] | None = Field(None, max_length=10, description="a choice of the case's; all when left out")
+    reuse: Literal["never", "allow"] = Field(
+        "never", description="allow: a succeeded run of the very same is answered (200) instead of a new one (202)"
+    )
+
+
+class RunChange(BaseModel):
+    """What is given is changed."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"tags": ["basis"], "pinned": True}]})
+    name: Label | None = None
+    tags: list[Tag] | None = Field(None, max_length=20)
+    pinned: bool | None = Field(None, description="a pinned run is kept however old")
+
+
+class RunCase(BaseModel):
+    """The very case that a run computes."""
+
+    name: str
+    content_hash: str
+    case: dict[str, Any]
+    yaml: str
 
 
 class RunInfo(BaseModel):
     id: str = Field(examples=[ID])
-    case_id: str = Field(examples=[ID])
+    kind: str = Field("case", examples=["case"], description="case, or hydrodynamics (see GET /hydrodynamics/{id})")
+    case_id: str | None = Field(examples=[ID], description="null for a run without a case")
     case_name: str = Field(examples=["FPSO 2000 m"])
     content_hash: str = Field(examples=[HASH])
     analyses: list[str] = Field(examples=[["statics", "frequency_domain", "modes"]])
@@ -91,7 +170,18 @@ class RunInfo(BaseModel):
     attempt: int = Field(examples=[1])
     solver_version: str | None
     data_set_id: str | None
+    data_hash: str | None = None
     warnings: list[str]
+    name: str = ""
+    tags: list[str] = []
+    pinned: bool = False
+    priority: str = Field("normal", examples=["interactive"])
+    eta_seconds: float | None = Field(None, description="estimate of the seconds left; null without ground for one")
+    study_id: str | None = None
+    study_index: int | None = None
+    overrides: dict[str, Any] | None = Field(None, description="what a study's run changes in its case")
+    rerun_of: str | None = None
+    created_by: str | None = Field(None, description="name of the user who started it")
 
 
 class RunPage(BaseModel):
@@ -152,6 +242,26 @@ class FieldFault(BaseModel):
     message: str
     value: str
     line: int | None
+
+
+class ImportReport(BaseModel):
+    """Sentences for people: what came over, what the source leaves open, what a case cannot say, what is still to be given."""
+
+    read: list[str]
+    assumed: list[str]
+    dropped: list[str]
+    missing: list[str]
+
+
+class ImportInfo(BaseModel):
+    """What a foreign model became. Where it is not `complete`, `errors` says which fields of `yaml` are to be filled in."""
+
+    complete: bool
+    name: str = Field(examples=["FPSO 2000 m"])
+    yaml: str = Field(description="the case's text, the report at its head as comments")
+    case: dict[str, Any] | None = Field(description="the case as an object in SI, when it is complete")
+    report: ImportReport
+    errors: list[FieldFault]
 
 
 class ProblemInfo(BaseModel):

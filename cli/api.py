@@ -20,16 +20,18 @@ def run_api(options: argparse.Namespace) -> int:
 
     import uvicorn
 
+    from store.logs import configure
     from store.settings import Settings
 
     from .serve import compose_app
 
     hold_on()
     settings = Settings.from_env()
+    configure(settings.log_level, settings.log_json)
     app = compose_app(settings, options.port, pages=not options.no_pages)
     config = uvicorn.Config(
         app,
-        log_level=settings.log_level.lower(),
+        log_config=None,
         access_log=False,
         server_header=False,
         timeout_graceful_shutdown=2,

@@ -9,9 +9,18 @@ from collections.abc import Sequence
 
 COMMANDS = {
     "run": ("cli.run", "run a case here, without a server"),
+    "moordyn": ("cli.moordyn", "read a MoorDyn deck into a case, or write one from a case"),
+    "data": ("cli.data", "check hydrodynamic data, or convert between WAMIT's files and NetCDF"),
+    "bem": ("cli.bem", "compute hydrodynamic data of a hull, without a server"),
     "serve": ("cli.serve", "start the service: REST, pages and workers together"),
     "worker": ("cli.worker", "start one worker, for a service on several processes or machines"),
     "demo": ("cli.demo", "start the service, run the FPSO example and show its results"),
+    "user": ("cli.user", "accounts: add, list, disable, reset-password"),
+    "key": ("cli.key", "API keys: add, list, revoke"),
+    "queue": ("cli.queue", "what waits, what is at work, what failed and why"),
+    "retention": ("cli.retention", "delete ended runs older than so many days; pinned ones stay"),
+    "backup": ("cli.backup", "save the database into one file, while the service runs"),
+    "restore": ("cli.restore", "put a saved database back"),
     "migrate": ("cli.migrate", "bring the database to this version's schema"),
 }
 HIDDEN = {"api": "cli.api"}

@@ -7,11 +7,14 @@ import json
 import os
 import sys
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from solver.case import Case
+    from solver.results.part import Result
 
 DONE, WRONG, NOT_CONVERGED = 0, 2, 3
 
@@ -25,6 +28,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     parser.add_argument("case", type=Path, help="the case file; hydrodynamic data are found relative to it")
     parser.add_argument("--json", type=Path, metavar="OUT", help="write the summary here (docs/summary.md)")
+    parser.add_argument(
+        "--out", type=Path, metavar="FILE", help="write the channels here: .nc, .csv or .parquet (docs/export.md)"
+    )
     parser.add_argument("--only", metavar="NAMES", help="analyses to run, e.g. frequency_domain,modes")
     parser.add_argument("--seeds", type=int, metavar="N", help="number of time-domain realisations")
     parser.add_argument("--duration", type=float, metavar="S", help="kept duration of the time domain [s]")
@@ -38,7 +44,13 @@ def command(args: argparse.Namespace) -> int:
 
     try:
         case, base = load(args)
-        summary = _solve(case, base, quiet=args.quiet)
+        kind = _format(args.out) if args.out else ""
+        result = _solve(case, base, quiet=args.quiet)
+        summary = result.summary
+        if args.json:
+            write_whole(args.json, json.dumps(summary, indent=1, allow_nan=False))
+        if args.out and result.channels:
+            _export(args.out, kind, case, result)
     except CaseError as error:
         for item in error.errors:
             print(f"{args.case}: {item}", file=sys.stderr)
@@ -46,8 +58,6 @@ def command(args: argparse.Namespace) -> int:
     except DataError as error:
         print(f"{args.case}: {error}", file=sys.stderr)
         return WRONG
-    if args.json:
-        write_whole(args.json, json.dumps(summary, indent=1, allow_nan=False))
     if not args.quiet:
         from cli.table import show
 
@@ -89,7 +99,7 @@ def load(args: argparse.Namespace) -> tuple[Case, Path]:
     return case, args.case.resolve().parent
 
 
-def _solve(case: Case, base: Path, quiet: bool) -> dict[str, Any]:
+def _solve(case: Case, base: Path, quiet: bool) -> Result:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
@@ -111,17 +121,56 @@ def _solve(case: Case, base: Path, quiet: bool) -> dict[str, Any]:
     )
     with Progress(*columns, console=console, disable=quiet or not console.is_terminal, transient=True) as bar:
         task = bar.add_task("starting", total=1.0)
-        result = run(case, source, lambda at: bar.update(task, completed=at.fraction, description=at.message))
-    return result.summary
+        return run(case, source, lambda at: bar.update(task, completed=at.fraction, description=at.message))
+
+
+def _format(path: Path) -> str:
+    """The format of `--out`, known before the run starts. Raises CaseError, also where its library is missing."""
+    from importlib.util import find_spec
+
+    from solver.io.export import format_of
+    from solver.io.table import NO_PARQUET
+    from solver.outcome import CaseError, FieldError
+
+    kind = format_of(path.name)
+    if not path.absolute().parent.is_dir():
+        raise CaseError([FieldError(("out",), f"{path} cannot be written: there is no such folder")])
+    if kind == "parquet" and find_spec("pyarrow") is None:
+        raise CaseError([FieldError(("out",), NO_PARQUET, path.name)])
+    return kind
+
+
+def _export(path: Path, kind: str, case: Case, result: Result) -> None:
+    from solver.case import to_yaml
+    from solver.io.export import describe, write_results
+    from solver.io.selection import select_channels
+
+    channels = {channel.name: channel for channel in result.channels}
+    selection = select_channels({name: channel.dims for name, channel in channels.items()}, channels.__getitem__)
+    about = describe(result.summary, to_yaml(case), case.name)
+    with _whole(path) as file:
+        write_results(file, kind, selection, about)
 
 
 def write_whole(path: Path, text: str) -> None:
     """Write a file so that it is there whole or not at all. Raises CaseError when it cannot be written."""
+    with _whole(path) as file:
+        file.write(text.encode())
+
+
+@contextmanager
+def _whole(path: Path) -> Iterator[IO[bytes]]:
     from solver.outcome import CaseError, FieldError
 
     try:
-        with tempfile.NamedTemporaryFile("w", dir=path.parent, prefix=f".{path.name}.", delete=False) as file:
-            file.write(text)
+        file = tempfile.NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}.", delete=False)  # noqa: SIM115 (kept)
+    except OSError as error:
+        raise CaseError([FieldError((), f"{path} cannot be written: {error.strerror}")]) from None
+    try:
+        with file:
+            yield file  # type: ignore[misc]
         os.replace(file.name, path)
     except OSError as error:
         raise CaseError([FieldError((), f"{path} cannot be written: {error.strerror}")]) from None
+    finally:
+        Path(file.name).unlink(missing_ok=True)

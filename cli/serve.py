@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import os
 from dataclasses import dataclass
 from typing import Any
@@ -14,7 +15,8 @@ from .supervisor import Child, Supervisor
 
 NO_LOGIN = (
     "{host} can be reached from other machines, and there are no accounts yet: whoever reaches it could read and "
-    "delete everything. Bind to 127.0.0.1, or say --allow-no-login where a network or proxy of yours keeps others out."
+    "delete everything. Make one with `slowdrift user add EMAIL`, or say --setup for a link at which to make it; bind to "
+    "127.0.0.1; or say --allow-no-login where a network or proxy of yours keeps others out."
 )
 
 
@@ -31,6 +33,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--workers", type=int, default=1, metavar="N", help="runs at a time; 0: API only (default: 1)")
     parser.add_argument("--no-pages", action="store_true", help="REST only")
     parser.add_argument("--allow-no-login", action="store_true", help="serve other machines though nobody signs in")
+    parser.add_argument("--setup", action="store_true", help="print a link at which to make the first account")
     parser.add_argument("--log", choices=("files", "here"), default="files", help="logs into the data folder, or here")
 
 
@@ -41,32 +44,39 @@ class Service:
     url: str
     settings: Settings
     supervisor: Supervisor
+    accounts: bool
+    """Whether people have to sign in."""
+    setup: str = ""
+    """The link of --setup."""
 
 
 def prepare(options: argparse.Namespace) -> Service:
     """Migrate, register the bundled data, bind, start the children. Raises RefusedError."""
-    if not is_loopback(options.host) and not options.allow_no_login:
-        raise RefusedError(NO_LOGIN.format(host=options.host))
-    anyone = (
-        {}
-        if is_loopback(options.host)
-        else {"SLOWDRIFT_ALLOWED_HOSTS": os.environ.get("SLOWDRIFT_ALLOWED_HOSTS") or "*"}
-    )
-    settings = read_settings(options.data_dir, anyone)
-    listener = bind(options.host, options.port)
+    extra = {}
+    if not is_loopback(options.host):
+        extra["SLOWDRIFT_ALLOWED_HOSTS"] = os.environ.get("SLOWDRIFT_ALLOWED_HOSTS") or "*"
+    settings = read_settings(options.data_dir, extra)
 
     from store.bundled import register_bundled
     from store.database import Database
     from store.migrations import upgrade
+    from store.repositories.entry import EntryRepository
 
     database = Database(settings.database)
     try:
         upgrade(database)
         register_bundled(database)
+        with database.read() as session:
+            known = EntryRepository(session).any_account()
     except Exception as error:
         raise RefusedError(f"the database cannot be prepared: {type(error).__name__}: {error}") from None
     finally:
         database.close()
+    if not (known or options.setup or options.allow_no_login or is_loopback(options.host)):
+        raise RefusedError(NO_LOGIN.format(host=options.host))
+    if known or options.setup:
+        settings = settings.model_copy(update={"accounts": "on"})
+    listener = bind(options.host, options.port)
     port = listener.getsockname()[1]
     supervisor = Supervisor(
         _children(options, listener.fileno(), port),
@@ -76,7 +86,26 @@ def prepare(options: argparse.Namespace) -> Service:
     supervisor.start()
     listener.detach()  # stays open here, so that connections wait while the API restarts
     shown = "127.0.0.1" if options.host in ("0.0.0.0", "::") else options.host
-    return Service(f"http://{f'[{shown}]' if ':' in shown else shown}:{port}", settings, supervisor)
+    url = f"http://{f'[{shown}]' if ':' in shown else shown}:{port}"
+    setup = _setup_link(settings, url) if options.setup and not known else ""
+    return Service(url, settings, supervisor, settings.accounts == "on", setup)
+
+
+def _setup_link(settings: Settings, url: str) -> str:
+    """Where to make the first account; good for a day, and once."""
+    from store.database import Database
+    from store.models import DEFAULT_TEAM
+    from store.people import OWNER
+
+    from .people import make_link
+
+    database = Database(settings.database)
+    try:
+        with database.write() as session:
+            link = make_link(session, settings, 1, team_id=DEFAULT_TEAM, role=OWNER, is_admin=True)
+    finally:
+        database.close()
+    return link if settings.public_url else url + link
 
 
 def _children(options: argparse.Namespace, descriptor: int, port: int) -> list[Child]:
@@ -85,6 +114,8 @@ def _children(options: argparse.Namespace, descriptor: int, port: int) -> list[C
     if options.workers > 0:
         children.append(Child("worker", ["worker", "--concurrency", str(options.workers)]))
         children.append(Child("interactive", ["worker", "--queue", "interactive"]))
+        if importlib.util.find_spec("capytaine"):  # hydrodynamic jobs take long: in a process of their own
+            children.append(Child("hydrodynamics", ["worker", "--queue", "hydrodynamics"]))
     return children
 
 
@@ -94,8 +125,14 @@ def serve(options: argparse.Namespace) -> int:
     except RefusedError as error:
         return refuse(error)
     say(f"Slowdrift is at {service.url}/  (Ctrl-C ends it)")
-    if is_loopback(options.host):
+    if service.setup:
+        say(f"Make the first account at {service.setup}  (within a day)")
+    if service.accounts:
+        say("People sign in: `slowdrift user list` shows who.")
+    elif is_loopback(options.host):
         say("No login: only this machine can reach it.")
+    else:
+        say("No login: whoever reaches this address may read and change everything.")
     if options.log == "files":
         say(f"Data and logs: {service.settings.data_dir}")
     try:
@@ -109,7 +146,9 @@ def compose_app(settings: Settings, port: int, pages: bool = True):  # type: ign
     """The API app with the pages mounted at /app, which talk to it over loopback like any other client."""
     from starlette.responses import RedirectResponse
 
+    from api.guard import session_token
     from api.main import create_app
+    from store.tokens import csrf_token
 
     app = create_app(settings)
     if not pages:
@@ -123,12 +162,14 @@ def compose_app(settings: Settings, port: int, pages: bool = True):  # type: ign
         return app
     server = create_pages(f"http://127.0.0.1:{port}")
 
-    def without_origin(environ: Any, start_response: Any) -> Any:
-        environ.pop(
-            "HTTP_ORIGIN", None
-        )  # checked by api/guard.py under the name the browser used; pages call by another
+    def vouched(environ: Any, start_response: Any) -> Any:
+        """The guard (api/guard.py) has judged the Origin under the name the browser used, and the pages call by
+        another: so they show, for the session they act for, that it has been judged."""
+        environ.pop("HTTP_ORIGIN", None)
+        session = session_token(environ.get("HTTP_COOKIE", ""))
+        environ["HTTP_X_CSRF_TOKEN"] = csrf_token(session) if session else ""
         return server(environ, start_response)
 
-    app.mount("/app", WSGIMiddleware(without_origin, workers=10))  # type: ignore[arg-type]
+    app.mount("/app", WSGIMiddleware(vouched, workers=10))  # type: ignore[arg-type]
     app.add_api_route("/", lambda: RedirectResponse("/app/"), include_in_schema=False)
     return app

@@ -13,7 +13,9 @@ from .options import RefusedError, add_data_dir, read_settings, refuse
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser = commands.add_parser("worker", help="start one worker")
-    parser.add_argument("--queue", choices=("runs", "interactive"), default="runs", help="default: %(default)s")
+    parser.add_argument(
+        "--queue", choices=("runs", "interactive", "hydrodynamics"), default="runs", help="default: %(default)s"
+    )
     parser.add_argument("--concurrency", type=int, default=1, metavar="N", help="tasks at a time (default: 1)")
     add_data_dir(parser)
     parser.add_argument(

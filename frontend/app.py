@@ -7,11 +7,13 @@ import importlib.util
 import flask
 from dash import Dash
 
-from frontend import pages, security
+from frontend import caching, pages, security
 from frontend.client import Client
 from frontend.components import shell
+from frontend.editor import routes
 
 TITLE = "Slowdrift"
+FIRST = "first.js"  # in the head: the scheme is known before anything is drawn
 
 
 def create_app(api_base_url: str | None = None, prefix: str = "/app/") -> flask.Flask:
@@ -27,6 +29,8 @@ def create_app(api_base_url: str | None = None, prefix: str = "/app/") -> flask.
     server.config["SLOWDRIFT_CLIENT"] = Client(api_base_url)
     server.config["COMPRESS_ALGORITHM"] = ["zstd", "br", "gzip", "deflate"]
     server.config["COMPRESS_BR_LEVEL"] = 4
+    server.config["COMPRESS_CACHE_BACKEND"] = caching.Compressed
+    server.config["COMPRESS_CACHE_KEY"] = caching.compressed_key
     app = Dash(
         __name__,
         server=server,  # type: ignore[arg-type]  # Dash takes a Flask app, its hint does not say so
@@ -39,11 +43,19 @@ def create_app(api_base_url: str | None = None, prefix: str = "/app/") -> flask.
         serve_locally=True,
         compress=importlib.util.find_spec("flask_compress") is not None,
         suppress_callback_exceptions=True,
+        assets_ignore=FIRST.replace(".", r"\."),
         meta_tags=[{"name": "viewport", "content": "width=device-width, initial-scale=1"}],
+    )
+    app.index_string = app.index_string.replace("<html>", '<html lang="en">', 1).replace(
+        "{%css%}",
+        f'{{%css%}}\n        <script src="{prefix}assets/{FIRST}?m={caching.asset_stamp(FIRST)}"></script>',
+        1,
     )
     pages.register(app)
     app.layout = shell.shell(prefix)
     shell.register(app)
     app.enable_dev_tools(debug=False)
+    routes.register(server)
     security.add_headers(server, app.csp_hashes)
+    caching.add_headers(server)
     return server

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -13,8 +14,12 @@ import httpx
 from frontend.errors import ApiError, unreachable
 
 API = "/api/v1"  # what the browser calls too, on the same origin
-FORWARDED = ("cookie", "authorization", "accept-language")  # not Origin: the service judged it when the page called
+FORWARDED = ("cookie", "x-csrf-token", "authorization", "accept-language")
+# not Origin: the service judged it when the page called, and says so to us by the token (cli/serve.py)
 YAML = {"content-type": "application/yaml"}
+SHARE = "Slowdrift-Share"  # what a page opened by a share link sends with its callbacks (assets/a-net.js)
+SHARED = ("/runs/", "/cases/")
+_TOKEN = re.compile(r"[A-Za-z0-9_.-]{8,200}")
 
 
 class Client:
@@ -35,6 +40,12 @@ class Client:
     def post_yaml(self, path: str, text: str) -> Any:
         return self._send("POST", path, content=text.encode(), headers=YAML)
 
+    def patch(self, path: str, json: Any) -> Any:
+        return self._send("PATCH", path, json=json)
+
+    def put(self, path: str, json: Any) -> Any:
+        return self._send("PUT", path, json=json)
+
     def delete(self, path: str) -> Any:
         return self._send("DELETE", path)
 
@@ -42,17 +53,21 @@ class Client:
         """The named channels, side by side; a name that the run does not have is left out. `view` goes to the service:
         points, from, to, seed, arc_length."""
         params = {key: value for key, value in view.items() if value is not None}
-        origin, headers = self._origin(), self._headers()
+        origin, headers, base = self._origin(), self._headers(), shared(f"/runs/{run_id}")
 
         def fetch(name: str) -> tuple[str, dict[str, Any] | None]:
-            url = f"{origin}{API}/runs/{run_id}/channels/{quote(name)}"
+            url = f"{origin}{API}{base}/channels/{quote(name)}"
             return name, self._answer("GET", url, headers, missing_is_none=True, params=params)
 
         return {name: channel for name, channel in self._pool.map(fetch, names) if channel is not None}
 
     def _send(self, method: str, path: str, headers: dict[str, str] | None = None, **sent: Any) -> Any:
         merged = {**self._headers(), **(headers or {})}
-        return self._answer(method, f"{self._origin()}{API}{path}", merged, **sent)
+        origin = self._origin()
+        if method != "GET" and "slowdrift" in merged.get("cookie", ""):  # the service judged the page's own Origin
+            who = self._answer("GET", f"{origin}{API}/me", merged)
+            merged |= {"x-csrf-token": who["csrf_token"]} if who.get("csrf_token") else {}
+        return self._answer(method, f"{origin}{API}{shared(path)}", merged, **sent)
 
     def _answer(
         self, method: str, url: str, headers: dict[str, str], missing_is_none: bool = False, **sent: Any
@@ -78,6 +93,12 @@ class Client:
         host = environ["SERVER_NAME"]
         host = {"0.0.0.0": "127.0.0.1", "::": "[::1]"}.get(host, f"[{host}]" if ":" in host else host)
         return f"http://{host}:{environ['SERVER_PORT']}"
+
+
+def shared(path: str) -> str:
+    """The path behind the share link by which the reader came, for runs and their cases; else the path itself."""
+    token = flask.request.headers.get(SHARE, "")
+    return f"/shared/{token}{path}" if _TOKEN.fullmatch(token) and path.startswith(SHARED) else path
 
 
 def client() -> Client:

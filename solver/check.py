@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
-import numpy as np
-
-from .case import Case, harmonic_frequencies
+from .case import Case
 from .outcome import CaseError, DataError, FieldError
-from .vessel.data import DataSource, HydrodynamicData
-from .vessel.rigid import about_cg, buoyancy_minus_weight, hydrostatic_stiffness, mass_matrix, water_warnings
+from .vessel.data import DataSource, HydrodynamicData, open_for
+from .vessel.fit import fit
+from .vessel.rigid import buoyancy_minus_weight, hydrostatic_stiffness, mass_matrix, water_warnings
 from .waves.spectra import hs_in_band, significant_height
 
 IN_BAND = 0.97  # of Hs: below it the wave band is said to miss part of the sea
@@ -26,8 +23,7 @@ def check(case: Case, data: DataSource | None) -> list[str]:
         mass_matrix(case.vessel)
         if case.vessel.hydrodynamics is not None:
             hydro = _opened(case, data)
-            _hydrodynamics(case, hydro)
-            warnings += [*hydro.warnings, *water_warnings(hydro, case.environment)]
+            warnings += [*fit(case, hydro), *water_warnings(hydro, case.environment)]
         else:
             hydro = None
         hydrostatic_stiffness(case.vessel, hydro)
@@ -44,51 +40,9 @@ def _opened(case: Case, data: DataSource | None) -> HydrodynamicData:
     if data is None:
         raise CaseError([FieldError(loc, "hydrodynamic data are referred to, but none can be opened here", reference)])
     try:
-        return data.open(reference)
+        return open_for(data, case.vessel.hydrodynamics, case.environment)
     except DataError as error:
         raise CaseError([FieldError(loc, str(error), reference)]) from None
-
-
-def _hydrodynamics(case: Case, hydro: HydrodynamicData) -> None:
-    vessel, errors = case.vessel, []
-    assert vessel is not None
-    assert vessel.hydrodynamics is not None
-    about, choice, top = about_cg(hydro, vessel), vessel.hydrodynamics, float(hydro.omega[-1])
-    lowest = 0.0 if hydro.added_mass_zero is not None else float(hydro.omega[0])
-    fd = case.analyses.frequency_domain
-    if fd is not None and case.environment.random and fd.wave.to > top * (1 + 1e-9):
-        errors.append(FieldError(
-            ("analyses", "frequency_domain", "wave", "to"),
-            f"{fd.wave.to:g} rad/s is above the hydrodynamic data; allowed: ≤ {top:g}", f"{fd.wave.to:g}",
-        ))  # fmt: skip
-    if choice.frequency is not None and not lowest <= choice.frequency <= top:
-        errors.append(FieldError(
-            ("vessel", "hydrodynamics", "frequency"),
-            f"{choice.frequency:g} rad/s is outside the hydrodynamic data; allowed: {lowest:g} to {top:g}",
-            f"{choice.frequency:g}",
-        ))  # fmt: skip
-    if choice.drift == "qtf" and hydro.qtf is None:
-        errors.append(FieldError(("vessel", "hydrodynamics", "drift"), "the data hold no full QTF; use newman", "qtf"))
-    if choice.drift.startswith("newman") and hydro.mean_drift is None:
-        errors.append(FieldError(
-            ("vessel", "hydrodynamics", "drift"),
-            "the data hold no mean_drift_force, which Newman's approximation needs; use drift: none", choice.drift,
-        ))  # fmt: skip
-    for loc, omega in harmonic_frequencies(case):
-        if not lowest <= omega <= top:
-            longest = f"{2 * math.pi / lowest:.4g}" if lowest > 0 else "any"
-            errors.append(FieldError(
-                loc, f"{2 * math.pi / omega:g} s is outside the hydrodynamic data; "
-                f"allowed: {2 * math.pi / top:.4g} to {longest} s", f"{2 * math.pi / omega:g}",
-            ))  # fmt: skip
-    middle = np.array([0.5 * (hydro.omega[0] + hydro.omega[-1])])
-    for index, sea in enumerate(case.environment.seastates):
-        try:
-            about.excitation_at(middle, float(sea.direction) - float(vessel.heading))
-        except DataError as error:
-            errors.append(FieldError(("environment", "seastates", index, "direction"), str(error)))
-    if errors:
-        raise CaseError(errors)
 
 
 def _bands(case: Case) -> list[str]:

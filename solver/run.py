@@ -21,7 +21,7 @@ from .results.summary import make_summary, provenance
 from .results.time import KEY, merge_time, time_part, time_summary, time_warnings
 from .statics.solve import StaticState, solve_statics
 from .time_domain.ensemble import march_ensemble
-from .time_domain.sea import low_border
+from .time_domain.sea import low_border, whole_period
 from .vessel.data import DataSource
 from .warm import warm_up, warm_up_time_domain
 
@@ -172,6 +172,8 @@ def _time_chunk(
     lines = [
         {"name": line.name, "gap": most - line.nodes, "arc_length": line.element_arc.tolist()} for line in static.lines
     ]
-    part = time_part(record, timing, lines, low_border(model), harmonic_omega(model.case))
+    omega, random = harmonic_omega(model.case), bool(model.case.environment.random)
+    periodic = omega is None and whole_period(spec, timing.duration)
+    part = time_part(record, timing, lines, low_border(model), omega, random, periodic)
     tell(Progress(1.0, "done"))
     return Part({**about, **part.summary}, (), part.arrays)

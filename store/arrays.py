@@ -73,6 +73,9 @@ def encode_values(values: np.ndarray, codec: str) -> bytes:
 
 def decode_values(payload: bytes, codec: str, shape: tuple[int, ...]) -> np.ndarray:
     dtype, size = _DTYPES[codec], math.prod(shape)
+    stated = zstandard.frame_content_size(payload)
+    if stated not in (-1, size * dtype.itemsize):  # -1: not stated; a stated size is what would be allocated
+        raise ValueError(f"a channel of shape {shape} unpacks to {stated} bytes; expected {size * dtype.itemsize}")
     raw = zstandard.ZstdDecompressor().decompress(payload, max_output_size=size * dtype.itemsize)
     if len(raw) != size * dtype.itemsize:
         raise ValueError(f"a channel of shape {shape} has {len(raw)} bytes; expected {size * dtype.itemsize}")

@@ -20,8 +20,10 @@ from kombu.utils.json import dumps, loads
 
 from .settings import Settings
 
-RUN_TASK, PREVIEW_TASK = "slowdrift.run_task", "slowdrift.preview"
-RUNS, INTERACTIVE = "runs", "interactive"
+WORK_TASK, PREVIEW_TASK = "slowdrift.work", "slowdrift.preview"
+RUNS, QUICK, INTERACTIVE, HYDRODYNAMICS = "runs", "quick", "interactive", "hydrodynamics"
+"""Queues of messages. `quick` is a second door for the small tasks of `runs` (store/priority.py)."""
+QUEUES = (RUNS, QUICK, INTERACTIVE, HYDRODYNAMICS)
 POLL_SECONDS = 0.2
 EMBEDDED = "slowdrift-files"
 
@@ -74,7 +76,7 @@ def queue_name(settings: Settings, queue: str) -> str:
     return f"{settings.queue_prefix}-{queue}"
 
 
-def celery_config(settings: Settings, queues: tuple[str, ...] = (RUNS, INTERACTIVE)) -> dict[str, Any]:
+def celery_config(settings: Settings, queues: tuple[str, ...] = QUEUES) -> dict[str, Any]:
     """What sender and worker share; the worker adds its own (worker/app.py)."""
     direct = Exchange("", type="direct")  # the default exchange: a queue's name is its address, nothing to bind
     declared = [Queue(name, direct, routing_key=name) for name in (queue_name(settings, q) for q in queues)]

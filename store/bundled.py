@@ -1,26 +1,20 @@
-"""The examples that come with Slowdrift: in ./examples of a checkout, in solver/examples of an installed wheel."""
+"""The data sets that come with Slowdrift, put into a project."""
 
 from __future__ import annotations
 
 import hashlib
 import logging
-from pathlib import Path
 
-import solver
 from solver.outcome import SlowdriftError
 from solver.vessel import data as hydrodynamics
 
 from .database import Database
+from .examples import examples_dir
 from .repositories import DataSetRepository
 from .scope import Scope
 
+__all__ = ["examples_dir", "register_bundled"]
 log = logging.getLogger(__name__)
-
-
-def examples_dir() -> Path:
-    package = Path(solver.__file__).parent
-    installed = package / "examples"
-    return installed if installed.is_dir() else package.parent / "examples"
 
 
 def register_bundled(database: Database, scope: Scope | None = None) -> list[str]:

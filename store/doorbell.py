@@ -5,15 +5,18 @@ from __future__ import annotations
 import logging
 import queue
 import threading
+from collections import Counter
 from collections.abc import Iterable
 
 from celery import Celery
 
-from .broker import INTERACTIVE, PREVIEW_TASK, RUN_TASK, celery_config, queue_name
+from .broker import INTERACTIVE, PREVIEW_TASK, WORK_TASK, celery_config, queue_name
 from .settings import Settings
 
 AT_ONCE = {"max_retries": 1, "interval_start": 0, "interval_step": 0, "interval_max": 0, "connect_retries_timeout": 1}
 WAITING = 10_000
+AT_A_DOOR = 32
+"""Messages sent at once to one queue: whoever hears one works until nothing is left, so there need not be one a task."""
 log = logging.getLogger(__name__)
 
 
@@ -35,8 +38,9 @@ class Doorbell:
 
     def ring(self, tasks: Iterable[tuple[str, str]]) -> None:
         """Say that these tasks (id, queue) wait: their rows are committed. Never raises, never waits."""
-        for task_id, name in tasks:
-            self._put((RUN_TASK, task_id, name))
+        for name, count in Counter(name for _, name in tasks).items():
+            for _ in range(min(count, AT_A_DOOR)):
+                self._put((WORK_TASK, name, name))
 
     def ring_preview(self, preview_id: str) -> None:
         self._put((PREVIEW_TASK, preview_id, INTERACTIVE))

@@ -10,7 +10,23 @@ class NotFoundError(SlowdriftError):
 
     def __init__(self, what: str, key: str):
         self.what, self.key = what, key
-        super().__init__(f"There is no {what} {key[:100]!r}.")
+        super().__init__(f"There is no {what} {key[:100]!r}." if key else f"There is no such {what}, or no longer.")
+
+
+class SignInError(SlowdriftError):
+    """Nobody known asks, or the password is wrong."""
+
+
+class ForbiddenError(SlowdriftError):
+    """The caller is known, and may not do this."""
+
+
+class TooManyError(SlowdriftError):
+    """Too many attempts in a short time."""
+
+    def __init__(self, message: str, retry_after: int):
+        self.retry_after = retry_after
+        super().__init__(message)
 
 
 class ConflictError(SlowdriftError):

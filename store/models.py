@@ -5,7 +5,19 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import JSON, DateTime, Float, ForeignKey, Index, LargeBinary, MetaData, String, Text, UniqueConstraint
+from sqlalchemy import (
+    JSON,
+    DateTime,
+    Float,
+    ForeignKey,
+    Index,
+    LargeBinary,
+    MetaData,
+    String,
+    Text,
+    UniqueConstraint,
+    false,
+)
 from sqlalchemy.engine import Dialect
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 from sqlalchemy.types import TypeDecorator
@@ -25,6 +37,8 @@ SUCCEEDED, FAILED, CANCELLED = "succeeded", "failed", "cancelled"
 ACTIVE = (QUEUED, RUNNING, CANCELLING)
 FINAL = (SUCCEEDED, FAILED, CANCELLED)
 STATES = ACTIVE + FINAL
+CASE, HYDRODYNAMICS = "case", "hydrodynamics"
+"""Kinds of runs."""
 
 
 class UtcDateTime(TypeDecorator[datetime]):
@@ -117,18 +131,60 @@ class DataSet(Base):
     created_at: Mapped[datetime] = mapped_column(default=utc_now)
 
 
-class Run(Base):
-    """One case version and the analyses asked of it. `state` is the truth about the run."""
+class Study(Base):
+    """A saved case and a list of overrides: its runs."""
 
-    __tablename__ = "runs"
-    __table_args__ = (Index("ix_runs_project_state", "project_id", "state"), Index("ix_runs_case", "case_version_id"))
+    __tablename__ = "studies"
     id: Mapped[str] = mapped_column(Id, primary_key=True, default=new_id)
     project_id: Mapped[str] = mapped_column(Id, ForeignKey("projects.id"))
     case_version_id: Mapped[str] = mapped_column(Id, ForeignKey("case_versions.id"))
+    name: Mapped[str] = mapped_column(String(200))
+    analyses: Mapped[list[Any]]
+    axes: Mapped[dict[str, Any] | None] = mapped_column(JSON, default=None)
+    """Of a grid: JSON pointer to its values, the last varying fastest."""
+    pointers: Mapped[list[Any]]
+    """Every pointer that a run of the study changes."""
+    size: Mapped[int]
+    created_by: Mapped[str | None] = mapped_column(Id, default=None)
+    created_at: Mapped[datetime] = mapped_column(default=utc_now)
+
+
+class Run(Base):
+    """One job: a case version and the analyses asked of it, or hydrodynamics. `state` is the truth about it."""
+
+    __tablename__ = "runs"
+    __table_args__ = (
+        Index("ix_runs_project_state", "project_id", "state"),
+        Index("ix_runs_case", "case_version_id"),
+        Index("ix_runs_project_id", "project_id", "id"),
+        Index("ix_runs_study", "study_id", "study_index"),
+        Index("ix_runs_identity", "project_id", "identity"),
+    )
+    id: Mapped[str] = mapped_column(Id, primary_key=True, default=new_id)
+    project_id: Mapped[str] = mapped_column(Id, ForeignKey("projects.id"))
+    kind: Mapped[str] = mapped_column(String(20), default=CASE, server_default=CASE)
+    """`case`, or `hydrodynamics`: a data set is to be computed (store/hydrodynamics.py)."""
+    case_version_id: Mapped[str | None] = mapped_column(Id, ForeignKey("case_versions.id"), default=None)
+    """None for a run that has no case."""
     data_set_id: Mapped[str | None] = mapped_column(Id, ForeignKey("data_sets.id"))
     """The very version of the data that the case's reference meant when the run was made."""
     case_name: Mapped[str] = mapped_column(String(200))
     content_hash: Mapped[str] = mapped_column(String(64))
+    """Of the case that is computed: the saved one with the overrides."""
+    overrides: Mapped[dict[str, Any] | None] = mapped_column(JSON, default=None)
+    """What a run of a study changes in its saved case: JSON pointer to value."""
+    data_hash: Mapped[str | None] = mapped_column(String(64), default=None)
+    identity: Mapped[str | None] = mapped_column(String(64), default=None)
+    """Hash of all that decides the numbers: case, data, analyses, solver version; None where that is not known."""
+    name: Mapped[str] = mapped_column(String(200), default="", server_default="")
+    tags: Mapped[list[Any]] = mapped_column(default=list, server_default="[]")
+    pinned: Mapped[bool] = mapped_column(default=False, server_default=false())
+    """Kept by retention however old."""
+    study_id: Mapped[str | None] = mapped_column(Id, ForeignKey("studies.id"), default=None)
+    study_index: Mapped[int | None] = mapped_column(default=None)
+    rerun_of: Mapped[str | None] = mapped_column(Id, default=None)
+    created_by: Mapped[str | None] = mapped_column(Id, default=None)
+    """The user who started it, where people sign in."""
     analyses: Mapped[list[Any]]
     state: Mapped[str] = mapped_column(String(20), default=QUEUED)
     reason: Mapped[str | None] = mapped_column(Text, default=None)
@@ -141,17 +197,22 @@ class Run(Base):
     finished_at: Mapped[datetime | None] = mapped_column(default=None)
 
 
+CLAIMS = Index("ix_tasks_claim", "queue", "state", "priority", "id")
+
+
 class Task(Base):
     """One chunk of a run. Lease, attempt, heartbeat and checkpoint belong here; times are seconds of `clock`."""
 
     __tablename__ = "tasks"
-    __table_args__ = (UniqueConstraint("run_id", "number"), Index("ix_tasks_state", "state", "rung_at"))
+    __table_args__ = (UniqueConstraint("run_id", "number"), Index("ix_tasks_state", "state", "rung_at"), CLAIMS)
     id: Mapped[str] = mapped_column(Id, primary_key=True, default=new_id)
     run_id: Mapped[str] = mapped_column(Id, ForeignKey("runs.id", ondelete="CASCADE"))
     number: Mapped[int]
     chunk: Mapped[dict[str, Any]]
     weight: Mapped[float] = mapped_column(Seconds, default=1.0)
     queue: Mapped[str] = mapped_column(String(50), default="runs")
+    priority: Mapped[int] = mapped_column(default=20, server_default="20")
+    """Smaller is sooner (store/priority.py)."""
     state: Mapped[str] = mapped_column(String(20), default=QUEUED)
     attempt: Mapped[int] = mapped_column(default=0)
     """Raised by every claim; a write with another attempt than the row's is refused."""
@@ -160,6 +221,9 @@ class Task(Base):
     worker: Mapped[str | None] = mapped_column(String(200), default=None)
     lease_until: Mapped[float | None] = mapped_column(Seconds, default=None)
     heartbeat_at: Mapped[float | None] = mapped_column(Seconds, default=None)
+    claimed_at: Mapped[float | None] = mapped_column(Seconds, default=None)
+    seconds: Mapped[float | None] = mapped_column(Seconds, default=None)
+    """What the attempt that succeeded took."""
     rung_at: Mapped[float] = mapped_column(Seconds, default=0.0)
     """When its message was last sent."""
     progress: Mapped[float] = mapped_column(Seconds, default=0.0)
@@ -186,6 +250,20 @@ class ChannelRow(Base):
     codec: Mapped[str] = mapped_column(String(30))
     payload: Mapped[bytes] = mapped_column(LargeBinary, deferred=True)
     axes_payload: Mapped[bytes] = mapped_column(LargeBinary, deferred=True)
+
+
+class IdempotencyKey(Base):
+    """What a POST with this key has made, so that the same request, sent again, makes nothing more."""
+
+    __tablename__ = "idempotency_keys"
+    __table_args__ = (UniqueConstraint("project_id", "key"),)
+    id: Mapped[str] = mapped_column(Id, primary_key=True, default=new_id)
+    project_id: Mapped[str] = mapped_column(Id, ForeignKey("projects.id"))
+    key: Mapped[str] = mapped_column(String(200))
+    fingerprint: Mapped[str] = mapped_column(String(64))
+    """Hash of method, path and body."""
+    resource_id: Mapped[str] = mapped_column(Id)
+    created_at: Mapped[datetime] = mapped_column(default=utc_now)
 
 
 class Preview(Base):

@@ -3,31 +3,38 @@
 from __future__ import annotations
 
 import logging
+import math
 import threading
+import time
 
 from sqlalchemy.exc import SQLAlchemyError
 
+from . import retention
 from .database import Database
 from .doorbell import Doorbell
 from .repositories import PreviewRepository, RecoveryRepository
 from .settings import Settings
 
 BATCH = 100
+SOME, FEW = 16, 2
+"""Tasks rung for in a round when nobody works, and when workers that live go from task to task by themselves."""
+SWEEP_SECONDS, SWEEP_MOST = 600.0, 2000
 log = logging.getLogger(__name__)
 
 
 def reconcile(database: Database, doorbell: Doorbell, settings: Settings) -> int:
     """One round; gives the number of tasks rung for."""
     with database.read() as session:
-        expired = RecoveryRepository(session).expired(BATCH)
+        expired = RecoveryRepository(session).expired(BATCH, settings.lease_seconds)
     for task_id in expired:
         with database.write() as session:
-            RecoveryRepository(session).settle_expired(task_id, settings.max_attempts)
+            RecoveryRepository(session).settle_expired(task_id, settings.max_attempts, settings.lease_seconds)
     with database.write() as session:
-        due = RecoveryRepository(session).ring_stale(settings.stale_seconds, BATCH)
+        recovery = RecoveryRepository(session)
+        due = recovery.ring_stale(settings.stale_seconds, FEW if recovery.at_work() else SOME)
         PreviewRepository(session).sweep()
     doorbell.ring(due)
-    return len(due)
+    return len({task_id for task_id, _ in due})
 
 
 class Reconciler(threading.Thread):
@@ -37,17 +44,27 @@ class Reconciler(threading.Thread):
         super().__init__(name="reconciler", daemon=True)
         self._context = (database, doorbell, settings)
         self._interval = settings.reconcile_seconds
+        self._swept_at = -math.inf
         self._halt = threading.Event()
 
     def run(self) -> None:
         while not self._halt.is_set():
             try:
                 reconcile(*self._context)
+                self._sweep()
             except SQLAlchemyError as error:
                 log.warning("The reconciler could not reach the database: %s", error)
             except Exception:
                 log.exception("A round of the reconciler failed")
             self._halt.wait(self._interval)
+
+    def _sweep(self) -> None:
+        database, _, settings = self._context
+        if settings.retention_days and time.monotonic() - self._swept_at > SWEEP_SECONDS:
+            self._swept_at = time.monotonic()
+            gone = retention.sweep(database, settings.retention_days, most=SWEEP_MOST)
+            if gone:
+                log.info("%d runs older than %g days deleted", gone, settings.retention_days)
 
     def stop(self) -> None:
         self._halt.set()

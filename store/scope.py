@@ -9,7 +9,11 @@ from .models import DEFAULT_PROJECT, DEFAULT_TEAM
 
 @dataclass(frozen=True)
 class Scope:
-    """The team and project of the caller. Until there are accounts, the default ones."""
+    """The team and project in which the caller works; the default ones where nobody signs in."""
 
     team_id: str = DEFAULT_TEAM
     project_id: str = DEFAULT_PROJECT
+    user_id: str | None = None
+    """Who asks; nobody in particular where nobody signs in, or behind a share link."""
+    run_ids: tuple[str, ...] | None = None
+    """The only runs to be seen, with their cases, behind a share link; None: all of the project."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -31,7 +32,7 @@ class Settings(BaseModel):
     """redis://… or amqp://…; empty: files in the data folder."""
     queue_prefix: str = Field("slowdrift", pattern=r"^[A-Za-z0-9_-]{1,60}$")
     """Name before the queues, so that several installations can share a broker."""
-    lease_seconds: float = Field(60.0, gt=0)
+    lease_seconds: float = Field(30.0, gt=0)
     """How long a task belongs to a worker that gives no sign."""
     heartbeat_seconds: float = Field(1.0, gt=0)
     """How often a worker renews the lease, reports progress and looks for a cancel."""
@@ -45,16 +46,42 @@ class Settings(BaseModel):
     """How long a task may stay queued before its message is sent again."""
     worker_memory_mb: int = Field(2000, ge=100)
     """A worker process above this is replaced after its task."""
+    task_memory_mb: int = Field(4000, ge=100)
+    """A task that needs more is ended, and its run fails with that reason."""
+    bem_memory_mb: int = Field(3000, ge=100)
+    """A hydrodynamic job that would need more is refused; keep it below task_memory_mb."""
+    task_timeout_seconds: float = Field(900.0, gt=0)
+    """A task may take so long, or timeout_factor times its estimate if that is more."""
+    timeout_factor: float = Field(20.0, ge=1)
+    """See task_timeout_seconds."""
     preview_seconds: float = Field(1.0, gt=0)
     """How long POST /preview waits for an answer."""
     max_request_bytes: int = Field(2_000_000, ge=1000)
     """Largest request body, data sets apart."""
     max_data_bytes: int = Field(64_000_000, ge=1000)
     """Largest data set."""
+    max_bundle_bytes: int = Field(256_000_000, ge=1000)
+    """Largest file of a run that is imported."""
     allowed_hosts: str = ""
     """Host names the API answers to beside this machine's own, with commas; * for any."""
+    accounts: Literal["auto", "on"] = "auto"
+    """auto: people sign in as soon as there is an account; on: from the start."""
+    secret: str = Field("", pattern=r"^(.{32,})?$", repr=False)
+    """Key of the HMACs of tokens, 32 characters or more; empty: the file `secret` in the data folder."""
+    session_hours: float = Field(336.0, gt=0, le=8760)
+    """How long one stays signed in."""
+    public_url: str = Field("", pattern=r"^(https?://[^/]+)?/?$")
+    """Where people reach the service, for links and secure cookies; empty: as the request came in."""
+    rate_per_minute: int = Field(6000, ge=0)
+    """Requests of one key, session or (of strangers) address in a minute; 0: any number."""
+    retention_days: float = Field(0.0, ge=0)
+    """Ended runs older than this are deleted unless they are pinned; 0: none ever."""
+    metrics_token: str = Field("", repr=False)
+    """What /metrics wants as `Authorization: Bearer …`; empty: it answers this machine only."""
     log_level: str = "INFO"
     """Level of the service's logs."""
+    log_json: bool = False
+    """Logs as one JSON object a line."""
     solver: str = "solver.run"
     """Module with run_chunk and merge; tests put a fake there."""
 

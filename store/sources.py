@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections import OrderedDict
 
+from solver.case.vessel import WamitFiles
 from solver.outcome import DataError
 from solver.vessel import data as hydrodynamics
 from solver.vessel.data import HydrodynamicData
@@ -22,10 +23,12 @@ class PinnedSource:
     def __init__(self, row: DataSet | None):
         self._found = None if row is None else (row.content_hash, row.filename, row.payload)
 
-    def open(self, reference: str) -> HydrodynamicData:
+    def open(self, reference: str, wamit: WamitFiles | None = None) -> HydrodynamicData:
         if self._found is None:
             raise DataError(f"There is no data set {reference[:100]!r} here; upload it first (POST /data-sets).")
         content_hash, filename, payload = self._found
+        if wamit is not None:  # the upload's conventions hold; a case that states others is refused
+            return hydrodynamics.read_bytes(payload, filename, wamit)
         with _lock:
             if content_hash in _read:
                 _read.move_to_end(content_hash)

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from celery import Celery
+from celery.signals import setup_logging
 
 from store.broker import celery_config
+from store.logs import configure
 from store.settings import Settings
 
 settings = Settings.from_env()
@@ -19,5 +23,10 @@ app.conf.update(
     worker_enable_remote_control=False,
     worker_send_task_events=False,
     worker_cancel_long_running_tasks_on_connection_loss=False,
-    worker_hijack_root_logger=True,
+    worker_hijack_root_logger=False,
 )
+
+
+@setup_logging.connect
+def _configure_logs(**_: Any) -> None:
+    configure(settings.log_level, settings.log_json)

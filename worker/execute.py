@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 import logging
+import os
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from importlib import metadata
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -19,16 +19,22 @@ from solver.outcome import Cancelled, SlowdriftError
 from solver.results.part import Chunk, OnProgress, Part, Result
 from solver.vessel.data import DataSource
 from store.database import Database
-from store.effective import stored_case
+from store.effective import solver_version, stored_case
 from store.errors import LostLeaseError
+from store.estimate import snapshot
+from store.logs import about
 from store.models import FAILED, SUCCEEDED
 from store.repositories import ChannelRepository, TaskRepository
+from store.repositories.hydrodynamics import Assignment, HydrodynamicTasks
 from store.repositories.tasks import Job, Outcome, Ticket
 from store.settings import Settings
 
-from .keeper import Keeper, Lost, Released
+from . import hydrodynamics
+from .keeper import Exceeded, Keeper, Limits, Lost, Released
 
 log = logging.getLogger(__name__)
+UNKNOWN_RATE = 30.0
+"""Seconds that a frequency-domain run is thought to take where none has been seen."""
 Answer = TypeVar("Answer")
 
 
@@ -56,22 +62,46 @@ class Worker:
     settings: Settings
     name: str
     shutting_down: Callable[[], bool] = lambda: False
+    leave: Callable[[int], None] = os._exit
+    """How the process ends when a computation does not stop."""
 
 
 def execute(worker: Worker, task_id: str) -> str:
-    """Do the task if it is to be had. Gives a word on how it went, for the log; the row has the truth."""
+    """Do this task if it is to be had. Gives a word on how it went, for the log; the row has the truth."""
     with worker.database.write() as session:
         ticket = TaskRepository(session).claim(
             task_id, worker.name, worker.settings.lease_seconds, worker.settings.max_attempts
         )
-    if ticket is None:
-        return "not to be had"
-    try:
-        with Keeper(worker.database, ticket, worker.settings, worker.shutting_down) as keeper:
-            return _attempt(worker, ticket, keeper)
-    except LostLeaseError as error:
-        log.warning("%s", error)
-        return "lost"
+    return "not to be had" if ticket is None else _kept(worker, ticket)
+
+
+def execute_next(worker: Worker, queue: str, up_to: int | None = None) -> tuple[str, str] | None:
+    """Do the most urgent task of the queue; id and word. None when nothing waits (of priority number `up_to`)."""
+    with worker.database.write() as session:
+        ticket = TaskRepository(session).claim_next(
+            queue, worker.name, worker.settings.lease_seconds, worker.settings.max_attempts, up_to
+        )
+    return None if ticket is None else (ticket.task_id, _kept(worker, ticket))
+
+
+def _kept(worker: Worker, ticket: Ticket) -> str:
+    with about(run_id=ticket.run_id, task_id=ticket.task_id, attempt=ticket.attempt):
+        limits = _limits(worker, ticket)
+        try:
+            with Keeper(worker.database, ticket, worker.settings, worker.shutting_down, limits, worker.leave) as keeper:
+                return _attempt(worker, ticket, keeper)
+        except LostLeaseError as error:
+            log.warning("%s", error)
+            return "lost"
+
+
+def _limits(worker: Worker, ticket: Ticket) -> Limits:
+    """Time by the estimate of the task, with much to spare; memory by the setting."""
+    settings = worker.settings
+    with worker.database.read() as session:
+        rate = snapshot(session).rates.get(None, UNKNOWN_RATE)
+    seconds = max(settings.task_timeout_seconds, settings.timeout_factor * rate * ticket.weight)
+    return Limits(seconds, settings.task_memory_mb)
 
 
 def _attempt(worker: Worker, ticket: Ticket, keeper: Keeper) -> str:
@@ -79,6 +109,8 @@ def _attempt(worker: Worker, ticket: Ticket, keeper: Keeper) -> str:
         return _compute(worker, ticket, keeper)
     except Lost:
         return "lost"
+    except Exceeded:
+        return _fail(worker, ticket, keeper.reason)
     except Released:
         _persist(worker, lambda session: TaskRepository(session).release(ticket, keeper.checkpoint))
         return "released"
@@ -104,17 +136,24 @@ def _attempt(worker: Worker, ticket: Ticket, keeper: Keeper) -> str:
 
 def _compute(worker: Worker, ticket: Ticket, keeper: Keeper) -> str:
     with worker.database.read() as session:
-        job = TaskRepository(session).job(ticket)
-    case = stored_case(job.canonical, job.analyses)
+        assignment = HydrodynamicTasks(session).assignment(ticket)
+        if assignment is None:
+            job = TaskRepository(session).job(ticket)
+    if assignment is not None:
+        return _hydrodynamics(worker, ticket, keeper, assignment)
+    case = stored_case(job.canonical, job.analyses, job.overrides)
     if job.part is None:
         part = worker.solver.run_chunk(case, job.data, job.chunk, job.checkpoint, keeper.on_progress)
         if not job.alone:
             payload = part.to_bytes()
+            keeper.writing = True
             if not _persist(worker, lambda session: TaskRepository(session).hand_in(ticket, payload)):
                 return "handed in"
+    keeper.writing = False
     parts = [part] if job.alone and job.part is None else _parts(worker, ticket)
     result = worker.solver.merge(case, parts)
     outcome = conclude(result, job)
+    keeper.writing = True
 
     def complete(session: Session) -> bool:
         tasks = TaskRepository(session)
@@ -124,6 +163,18 @@ def _compute(worker: Worker, ticket: Ticket, keeper: Keeper) -> str:
         return True
 
     return outcome.state if _persist(worker, complete) else "cancelled"
+
+
+def _hydrodynamics(worker: Worker, ticket: Ticket, keeper: Keeper, assignment: Assignment) -> str:
+    name, made, summary, warnings = hydrodynamics.compute(assignment, worker.settings.data_dir, keeper.on_progress)
+    text = to_json({hydrodynamics.ANALYSIS: summary | {"data_set": made.summary}})
+    outcome = Outcome(SUCCEEDED, None, {hydrodynamics.ANALYSIS: SUCCEEDED}, text, warnings, solver_version() or "unknown")
+    keeper.writing = True
+
+    def complete(session: Session) -> bool:
+        return HydrodynamicTasks(session).complete(ticket, outcome, name, made)
+
+    return SUCCEEDED if _persist(worker, complete) else "cancelled"
 
 
 def _parts(worker: Worker, ticket: Ticket) -> list[Part]:
@@ -145,7 +196,7 @@ def conclude(result: Result, job: Job) -> Outcome:
         outcomes=outcomes,
         summary=to_json(result.summary),
         warnings=tuple(str(text) for text in result.summary.get("warnings", ())),
-        solver_version=str(result.summary.get("provenance", {}).get("solver_version") or solver_version()),
+        solver_version=str(result.summary.get("provenance", {}).get("solver_version") or solver_version() or "unknown"),
     )
 
 
@@ -163,13 +214,6 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"{type(value).__name__} has no place in a summary")
 
 
-def solver_version() -> str:
-    try:
-        return metadata.version("slowdrift")
-    except metadata.PackageNotFoundError:
-        return "unknown"
-
-
 def _fail(worker: Worker, ticket: Ticket, reason: str) -> str:
     _persist(worker, lambda session: TaskRepository(session).fail(ticket, reason, solver_version()))
     return "failed"
@@ -177,12 +221,14 @@ def _fail(worker: Worker, ticket: Ticket, reason: str) -> str:
 
 def _persist(worker: Worker, write: Callable[[Session], Answer]) -> Answer:
     """One unit of work, tried again while the database is away; the fence makes repeating it safe."""
-    for pause in (0.5, 1.0, 2.0, 4.0, 8.0):
+    patience, pause = time.monotonic() + worker.settings.lease_seconds, 0.5
+    while True:
         try:
             with worker.database.write() as session:
                 return write(session)
         except OperationalError as error:
+            if time.monotonic() > patience:
+                raise
             log.warning("The database did not take a result (%s); trying again", error)
             time.sleep(pause)
-    with worker.database.write() as session:
-        return write(session)
+            pause = min(2 * pause, 4.0)

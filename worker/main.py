@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import os
 
-from store.broker import EMBEDDED, INTERACTIVE, RUNS, queue_name
+from store.broker import EMBEDDED, HYDRODYNAMICS, INTERACTIVE, QUICK, RUNS, queue_name
+
+from . import hydrodynamics
 
 QUICK_POLL_SECONDS = 0.05
 
 
 def run_worker(queue: str = RUNS, concurrency: int = 1) -> None:
-    """Serve one queue until ended by a signal."""
+    """Serve one queue until ended by a signal.
+
+    The interactive worker takes previews and, in one of its two processes at a time, small runs: so that neither waits
+    for the other, nor for what the workers of `runs` have at hand.
+    """
     from .app import app, settings
 
     # one thread per process: the solver's parallelism is runs and chunks, not BLAS
@@ -18,10 +24,15 @@ def run_worker(queue: str = RUNS, concurrency: int = 1) -> None:
         os.environ.setdefault(name, "1")
     if queue == INTERACTIVE and app.conf.broker_url.startswith(EMBEDDED):
         app.conf.broker_transport_options |= {"polling_interval": QUICK_POLL_SECONDS}  # somebody waits for the answer
+    if queue == HYDRODYNAMICS:
+        hydrodynamics.warm_up(settings.data_dir)
+    queues = [queue]
+    if queue == INTERACTIVE:
+        queues, concurrency = [INTERACTIVE, QUICK], max(2, concurrency)
     app.worker_main(
         [
             "worker",
-            f"--queues={queue_name(settings, queue)}",
+            f"--queues={','.join(queue_name(settings, name) for name in queues)}",
             f"--concurrency={concurrency}",
             f"--hostname={queue}@%h",
             "--pool=prefork",

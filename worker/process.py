@@ -6,11 +6,14 @@ import contextlib
 import fcntl
 import mmap
 import os
+import resource
 import socket
 import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
+
+import psutil
 
 _flag = mmap.mmap(-1, 1)  # shared with children forked after this import
 
@@ -24,6 +27,32 @@ def one_at_a_time(path: Path) -> Iterator[None]:
             file = stack.enter_context(path.open("ab"))
             fcntl.flock(file, fcntl.LOCK_EX)
         yield
+
+
+@contextlib.contextmanager
+def only_one(path: Path) -> Iterator[bool]:
+    """Whether this process has the file's lock; it does not wait for it."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("ab") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            yield False
+            return
+        yield True
+
+
+def memory_mb() -> float:
+    """Resident memory of this process."""
+    return float(psutil.Process().memory_info().rss / 2**20)
+
+
+def bound_memory(more_mb: float) -> None:
+    """Let allocations beyond this much more fail (MemoryError) before they take the machine."""
+    with contextlib.suppress(OSError, ValueError, AttributeError, psutil.Error):
+        now = psutil.Process().memory_info().data
+        _, hard = resource.getrlimit(resource.RLIMIT_DATA)
+        resource.setrlimit(resource.RLIMIT_DATA, (now + int(more_mb * 2**20), hard))
 
 
 def announce_shutdown() -> None:

@@ -6,6 +6,7 @@ from fastapi import APIRouter, Response
 
 from store.repositories import CaseRepository
 
+from ..access import needs
 from ..bodies import BodyDep
 from ..context import ContextDep, ScopeDep
 from ..schemas import CaseCheck, CaseDetail, CaseInfo, CasePage
@@ -30,6 +31,7 @@ def save_case(context: ContextDep, scope: ScopeDep, body: BodyDep, response: Res
 
 
 @router.post("/check", responses=problems(422), openapi_extra=case_body(), max_body_size=CASE_BYTES)
+@needs("read")
 def check_case(context: ContextDep, scope: ScopeDep, body: BodyDep) -> CaseCheck:
     """Check a case; nothing is stored."""
     checked = service.check_body(context, scope, body)

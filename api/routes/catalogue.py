@@ -10,6 +10,7 @@ from fastapi import APIRouter, Response
 from solver.case import Case, load_case
 from store.bundled import examples_dir
 
+from ..access import needs
 from ..bodies import BodyDep
 from ..context import ContextDep, ScopeDep
 from ..schemas import Example
@@ -20,18 +21,21 @@ router = APIRouter(tags=["cases"])
 
 
 @router.get("/schema")
+@needs("account")
 def get_schema() -> dict[str, Any]:
     """JSON Schema of a case."""
     return _schema()
 
 
 @router.get("/examples")
+@needs("account")
 def list_examples() -> list[Example]:
     """The bundled cases; the data they refer to are registered under their names."""
     return _examples()
 
 
 @router.post("/preview", responses=problems(422, 503, 504), openapi_extra=case_body(), max_body_size=CASE_BYTES)
+@needs("read")
 def make_preview(context: ContextDep, scope: ScopeDep, body: BodyDep) -> dict[str, Any]:
     """Statics and the shape of every line, in about a second or not at all; nothing is stored."""
     answer = preview(context, scope, body)

@@ -10,6 +10,7 @@ from fastapi import Path as PathParameter
 from fastapi import Query
 
 from store.bundled import examples_dir
+from store.models import STATES
 
 from ..bodies import DRAIN_BYTES
 from ..schemas import ProblemInfo
@@ -22,14 +23,27 @@ Cursor = Annotated[str | None, Query(max_length=64, description="`next_cursor` o
 Key = Annotated[str, PathParameter(max_length=64)]
 
 
+StatesQuery = Annotated[
+    str | None,
+    Query(pattern=rf"^({'|'.join(STATES)})(,({'|'.join(STATES)}))*$", description="one or several, with commas"),
+]
+
+
+def states_of(text: str | None) -> tuple[str, ...]:
+    return tuple(text.split(",")) if text else ()
+
+
 def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
     content = {"application/problem+json": {"schema": _problem_schema()}}
     texts = {
         400: "The body cannot be read.",
+        401: "Nobody known asks; sign in, or send a key.",
+        403: "The caller may not do this, or a browser's request came from another origin.",
         404: "There is no such thing here.",
         409: "The present state does not allow this.",
         413: "The body is too large.",
         422: "A fault of the case or the request, field by field.",
+        429: "Too many attempts; the header Retry-After says for how long to wait.",
         503: "A part of the service is not available.",
         504: "The answer did not come in time.",
     }

@@ -7,6 +7,8 @@ number of API processes.
 from __future__ import annotations
 
 import asyncio
+import math
+import time
 from collections.abc import AsyncIterator
 from typing import Annotated
 
@@ -27,6 +29,14 @@ from .common import Key, problems
 router = APIRouter(tags=["events"])
 RUN_SECONDS, PROJECT_SECONDS = 0.25, 0.5
 NEWEST, MOST_ACTIVE = 50, 200
+SIGNED_IN_SECONDS = 600.0
+"""A stream of somebody signed in, or behind a share link, ends after so long: whoever may still ask opens another (a
+browser does so by itself), whoever may no longer is refused."""
+
+
+def _deadline(scope: Scope) -> float:
+    may_change = scope.user_id is not None or scope.run_ids is not None
+    return time.monotonic() + SIGNED_IN_SECONDS if may_change else math.inf
 
 
 def existing_run(context: ContextDep, scope: ScopeDep, run_id: Key) -> RunInfo:
@@ -39,8 +49,9 @@ async def follow_run(
     context: ContextDep, scope: ScopeDep, run: Annotated[RunInfo, Depends(existing_run)]
 ) -> AsyncIterator[ServerSentEvent]:
     """Event `run` with the run as data: at once, at every change, and a last time in its final state."""
+    until = _deadline(scope)
     yield _event(run)
-    while run.state not in FINAL:
+    while run.state not in FINAL and time.monotonic() < until:
         await asyncio.sleep(RUN_SECONDS)
         try:
             now = await run_in_threadpool(service.show, context, scope, run.id)
@@ -54,11 +65,12 @@ async def follow_run(
 @router.get("/events", response_class=EventSourceResponse)
 async def follow_project(context: ContextDep, scope: ScopeDep) -> AsyncIterator[ServerSentEvent]:
     """Event `run` for every active run of the project at first, then for every change."""
+    until = _deadline(scope)
     seen = await run_in_threadpool(_look, context, scope, {})
     for run in sorted(seen.values(), key=lambda run: run.id):
         if run.state in ACTIVE:
             yield _event(run)
-    while True:
+    while time.monotonic() < until:
         await asyncio.sleep(PROJECT_SECONDS)
         now = await run_in_threadpool(_look, context, scope, seen)
         for key, run in now.items():

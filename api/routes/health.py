@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import hmac
 from typing import Any
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Request, Response
+from prometheus_client import CONTENT_TYPE_LATEST
 from sqlalchemy.exc import SQLAlchemyError
 
 from store import migrations
+from store.errors import NotFoundError
+from store.settings import LOOPBACK
 
 from ..context import Context, ContextDep
 
@@ -18,6 +22,20 @@ router = APIRouter(tags=["health"])
 async def healthz() -> dict[str, str]:
     """The process is up."""
     return {"status": "ok"}
+
+
+@router.get("/metrics", include_in_schema=False)
+def metrics(request: Request, context: ContextDep) -> Response:
+    """For Prometheus. With the setting metrics_token for whoever knows it, else for this machine only."""
+    token = context.settings.metrics_token
+    if token:
+        given = request.headers.get("authorization", "").removeprefix("Bearer ")
+        allowed = hmac.compare_digest(given.encode(), token.encode())
+    else:
+        allowed = request.client is None or request.client.host in (*LOOPBACK, "testclient")
+    if not allowed:
+        raise NotFoundError("page", "metrics")
+    return Response(request.app.state.metrics.text(), media_type=CONTENT_TYPE_LATEST)
 
 
 @router.get("/readyz")

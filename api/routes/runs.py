@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from typing import IO, Annotated, Any, Literal
+from datetime import UTC, datetime
+from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Query, Response
-from fastapi.responses import StreamingResponse
+from fastapi import APIRouter, Depends, Query, Response
 
+from store.filters import RunFilter
 from store.repositories import ChannelRepository, RunRepository
 
 from ..bodies import RunRequestDep
 from ..context import ContextDep, ScopeDep
-from ..schemas import ChannelPage, ChannelValues, RunInfo, RunPage, RunRequest
-from ..services import channels, export
+from ..idempotency import OnceDep
+from ..schemas import ChannelPage, ChannelValues, RunCase, RunChange, RunInfo, RunPage, RunRequest
+from ..services import channels
 from ..services import runs as service
-from .common import CASE_BYTES, Cursor, Key, Limit, problems
+from .common import CASE_BYTES, Cursor, Key, Limit, StatesQuery, problems, states_of
 
 router = APIRouter(prefix="/runs", tags=["runs"])
-State = Literal["queued", "running", "cancelling", "succeeded", "failed", "cancelled"]
 _REQUEST = {
     "requestBody": {
         "required": True,
@@ -28,19 +28,59 @@ _REQUEST = {
 }
 
 
-@router.post("", status_code=202, responses=problems(404, 422), openapi_extra=_REQUEST, max_body_size=CASE_BYTES)
-def start_run(context: ContextDep, scope: ScopeDep, request: RunRequestDep) -> RunInfo:
+def run_filter(
+    state: StatesQuery = None,
+    q: Annotated[str | None, Query(max_length=200, description="part of the run's or the case's name")] = None,
+    tag: Annotated[str | None, Query(max_length=50)] = None,
+    study: Annotated[str | None, Query(max_length=64)] = None,
+    case: Annotated[str | None, Query(max_length=64)] = None,
+    pinned: bool | None = None,
+    who: Annotated[str | None, Query(max_length=200, description="id, or part of the name, of the starter")] = None,
+    since: Annotated[datetime | None, Query(alias="from", description="created at or after")] = None,
+    until: Annotated[datetime | None, Query(alias="to", description="created at or before")] = None,
+    sort: Literal["-created", "created"] = "-created",
+) -> RunFilter:
+    """The filters of a list of runs."""
+    return RunFilter(
+        states_of(state), q, tag, study, case, pinned, who, _aware(since), _aware(until), oldest_first=sort == "created"
+    )
+
+
+def _aware(moment: datetime | None) -> datetime | None:
+    """A time without a zone is UTC."""
+    return moment.replace(tzinfo=UTC) if moment is not None and moment.tzinfo is None else moment
+
+
+@router.post(
+    "",
+    status_code=202,
+    responses={
+        200: {"model": RunInfo, "description": "With `reuse: allow`: this very run is here already."},
+        **problems(404, 409, 422),
+    },
+    openapi_extra=_REQUEST,
+    max_body_size=CASE_BYTES,
+)
+def start_run(
+    context: ContextDep, scope: ScopeDep, request: RunRequestDep, once: OnceDep, response: Response
+) -> RunInfo:
     """Queue a run of a saved case, or of one given here (which is saved first)."""
-    return service.start(context, scope, request)
+    run, made = service.start(context, scope, request, once)
+    response.status_code = 202 if made else 200
+    return run
 
 
 @router.get("")
 def list_runs(
-    context: ContextDep, scope: ScopeDep, limit: Limit = 50, cursor: Cursor = None, state: State | None = None
+    context: ContextDep,
+    scope: ScopeDep,
+    which: Annotated[RunFilter, Depends(run_filter)],
+    limit: Limit = 50,
+    cursor: Cursor = None,
 ) -> RunPage:
-    """Newest first."""
+    """Newest first, unless `sort` says otherwise."""
     with context.database.read() as session:
-        views, total = RunRepository(session, scope).page(limit, cursor, state)
+        views, total = RunRepository(session, scope).page(limit, cursor, which)
     items = [service.info(view) for view in views]
     return RunPage(items=items, next_cursor=items[-1].id if len(items) == limit else None, total=total)
 
@@ -54,6 +94,24 @@ def get_run(context: ContextDep, scope: ScopeDep, run_id: Key) -> RunInfo:
 def cancel_run(context: ContextDep, scope: ScopeDep, run_id: Key) -> RunInfo:
     """A queued run ends at once; a running one within about two seconds."""
     return service.cancel(context, scope, run_id)
+
+
+@router.patch("/{run_id}", responses=problems(404))
+def change_run(context: ContextDep, scope: ScopeDep, run_id: Key, change: RunChange) -> RunInfo:
+    """Name, tags, whether it is kept however old."""
+    return service.change(context, scope, run_id, change)
+
+
+@router.get("/{run_id}/case", responses=problems(404))
+def get_run_case(context: ContextDep, scope: ScopeDep, run_id: Key) -> RunCase:
+    """The very case that it computes; of a study's run, with what the study changes."""
+    return service.computed(context, scope, run_id)[2]
+
+
+@router.post("/{run_id}/rerun", status_code=202, responses=problems(404, 409))
+def rerun(context: ContextDep, scope: ScopeDep, run_id: Key, once: OnceDep) -> RunInfo:
+    """The same case version, data version and analyses again: the same numbers."""
+    return service.again(context, scope, run_id, once)
 
 
 @router.delete("/{run_id}", status_code=204, responses=problems(404, 409))
@@ -96,21 +154,3 @@ def get_channel(
         channel = ChannelRepository(session).get(run.id, name)
     shown = channels.look(channel, channels.View(start, stop, points, seed, arc_length))
     return Response(json.dumps(shown, allow_nan=False, separators=(",", ":")), media_type="application/json")
-
-
-@router.get(
-    "/{run_id}/export",
-    responses={200: {"content": {"application/zip": {}}}, **problems(404, 409)},
-    response_class=StreamingResponse,
-)
-def export_run(context: ContextDep, scope: ScopeDep, run_id: Key) -> StreamingResponse:
-    """run.json, summary.json, case.yaml and channels.npz in one ZIP."""
-    archive = export.archive(context, scope, run_id)
-    headers = {"Content-Disposition": f'attachment; filename="slowdrift-{run_id[:32]}.zip"'}
-    return StreamingResponse(_pieces(archive), media_type="application/zip", headers=headers)
-
-
-def _pieces(file: IO[bytes]) -> Iterator[bytes]:
-    with file:
-        while piece := file.read(256 * 1024):
-            yield piece

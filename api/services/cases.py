@@ -51,7 +51,7 @@ def check_body(context: Context, scope: Scope, body: Body) -> Checked:
 def check_data(context: Context, scope: Scope, data: Any, size: int = 0) -> Checked:
     if size > MAX_BYTES:
         raise CaseError([FieldError((), f"the case has {size} bytes; allowed: at most {MAX_BYTES}")])
-    case = _nameable(parse_case(data))
+    case = nameable(parse_case(data))
     warnings, data_set_id = examine(context, scope, case)
     return Checked(case, to_yaml(case), warnings, data_set_id)
 
@@ -59,14 +59,14 @@ def check_data(context: Context, scope: Scope, data: Any, size: int = 0) -> Chec
 def check_text(context: Context, scope: Scope, text: str | bytes) -> Checked:
     case = load_case(text)
     try:
-        _nameable(case)
+        nameable(case)
         warnings, data_set_id = examine(context, scope, case)
     except CaseError as error:
         raise CaseError(_with_lines(error.errors, text)) from None
     return Checked(case, text if isinstance(text, str) else text.decode("utf-8-sig"), warnings, data_set_id)
 
 
-def _nameable(case: Case) -> Case:
+def nameable(case: Case) -> Case:
     """Names stand in lists and columns of their own; control characters and half surrogates cannot."""
     errors = [
         FieldError((field,), "holds characters that cannot be shown, such as control characters", ascii(text)[:80])

@@ -1,7 +1,7 @@
 /* Live state of runs: server-sent events from the REST API, polling where those do not come through. */
 (function () {
   "use strict";
-  const API = "/api/v1";
+  const { api } = window.slowdrift; // the service, or what a share link opens of it
   const FINAL = ["succeeded", "failed", "cancelled"];
   const POLL_MS = 3000;
   const nothing = () => window.dash_clientside.no_update;
@@ -23,7 +23,7 @@
 
   function start(stream) {
     if (!stream || stream.ended) return;
-    stream.source = new EventSource(API + stream.url);
+    stream.source = new EventSource(api() + stream.url);
     stream.source.addEventListener("run", (event) => {
       const run = JSON.parse(event.data);
       stream.on(run);
@@ -41,7 +41,7 @@
   async function poll(stream) {
     if (stream !== current || stream.ended) return;
     try {
-      const answer = await fetch(API + stream.poll, { credentials: "same-origin" });
+      const answer = await fetch(api() + stream.poll, { credentials: "same-origin" });
       if (answer.ok) {
         const body = await answer.json();
         (body.items || [body]).forEach(stream.on);
@@ -101,25 +101,14 @@
   }
 
   /* --- run page ------------------------------------------------------------------------------------------------- */
-  /* Plotly is large: fetch it while the run is asked for, not after. */
-  function expectPictures(prefix) {
-    if (window.Plotly || document.getElementById("expect-plotly")) return;
-    const link = document.createElement("link");
-    link.id = "expect-plotly";
-    link.rel = "preload";
-    link.as = "script";
-    link.href = `${prefix || "/"}_dash-component-suites/plotly/package_data/plotly.min.js`;
-    document.head.appendChild(link);
-  }
-
-  async function openRun(id, tab, prefix) {
+  async function openRun(id) {
     close();
     if (!id) return "off";
-    if (tab !== "overview") expectPictures(prefix);
+    window.slowdrift.expectPlotly(); // large: fetch it while the run is asked for, not after
     const on = (run) => set("run-page", "run-live", { data: run });
     const stream = { url: `/runs/${encodeURIComponent(id)}/events`, poll: `/runs/${encodeURIComponent(id)}`, single: true, on };
     current = stream;
-    const answer = await fetch(API + stream.poll, { credentials: "same-origin" }).catch(() => null);
+    const answer = await fetch(api() + stream.poll, { credentials: "same-origin" }).catch(() => null);
     if (stream !== current) return "off";
     if (!answer || !answer.ok) {
       set("run-page", "run-phase", { data: "missing" });
@@ -159,7 +148,7 @@
   function follow(pathname, prefix) {
     const inside = (pathname || "").slice((prefix || "/").length - 1).replace(/\/$/, "");
     const wanted = inside === "" ? "/events" : inside.startsWith("/runs/") ? `${inside}/events` : null;
-    if (current && current.url !== wanted) close();
+    if (current && current.url !== wanted && !inside.startsWith("/shared/")) close();
     return {};
   }
 

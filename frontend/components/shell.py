@@ -10,7 +10,7 @@ from dash import ClientsideFunction, Dash, Input, Output, State, dcc, html, page
 from frontend.components.attributes import hyphened
 from frontend.theme import MANTINE
 
-LINKS = (("Runs", "/"), ("New run", "/new"))
+LINKS = (("Runs", "/"), ("New run", "/new"), ("Compare", "/compare"), ("Studies", "/studies"), ("Data", "/data"))
 
 
 def shell(prefix: str) -> dmc.MantineProvider:
@@ -18,8 +18,7 @@ def shell(prefix: str) -> dmc.MantineProvider:
     return dmc.MantineProvider(
         id="mantine",
         theme=MANTINE,
-        defaultColorScheme="light",
-        forceColorScheme="light",
+        defaultColorScheme="auto",
         children=[
             dcc.Location(id="location", refresh="callback-nav"),
             dcc.Store(id="prefix", data=prefix),
@@ -27,7 +26,7 @@ def shell(prefix: str) -> dmc.MantineProvider:
             dmc.NotificationContainer(id="notices", position="top-right", autoClose=6000),
             html.A("Skip to the page", href="#page", className="sd-skip"),
             dmc.AppShell(
-                [_header(prefix), _navbar(prefix), dmc.AppShellMain(html.Div(page_container, id="page"))],
+                [_header(prefix), _navbar(prefix), dmc.AppShellMain([_away(), html.Div(page_container, id="page")])],
                 id="shell",
                 header={"height": 56},
                 navbar={"width": 220, "breakpoint": "sm", "collapsed": {"mobile": True, "desktop": True}},
@@ -45,12 +44,27 @@ def _header(prefix: str) -> dmc.AppShellHeader:
                 dmc.Burger(id="burger", opened=False, hiddenFrom="sm", size="sm", **hyphened(aria_label="Navigation")),
                 dcc.Link([_mark(), html.Span("Slowdrift")], href=prefix, className="sd-brand"),
                 html.Nav(dmc.Group(links, gap="xs", visibleFrom="sm", ml="lg"), **hyphened(aria_label="Pages")),
+                html.Div(id="account-corner", style={"marginLeft": "auto"}),
+                dmc.ColorSchemeToggle(
+                    lightIcon="☀",
+                    darkIcon="☾",
+                    variant="default",
+                    size="lg",
+                    id="scheme",
+                    **hyphened(aria_label="Light or dark"),
+                ),
             ],
             h="100%",
             px="md",
             gap="sm",
         )
     )
+
+
+def _away() -> html.Div:
+    """Shown by `assets/a-net.js` while requests do not get through."""
+    words = "The server does not answer. What you write is kept in this browser; this page goes on when it is back."
+    return html.Div(words, id="sd-away", hidden=True, role="status")
 
 
 def _mark() -> html.Span:

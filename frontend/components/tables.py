@@ -6,6 +6,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import dash_mantine_components as dmc
+from dash import html
+
+from frontend.components.attributes import hyphened
 
 
 def table(
@@ -17,7 +20,7 @@ def table(
     return dmc.Box(
         [
             *([dmc.Title(caption, order=4, mb=6)] if caption else []),
-            dmc.TableScrollContainer(
+            html.Div(
                 dmc.Table(
                     [
                         dmc.TableThead(
@@ -28,9 +31,12 @@ def table(
                     withTableBorder=True,
                     verticalSpacing=5,
                     className="sd-table",
+                    miw=min_width,
                 ),
-                minWidth=min_width,
-                type="native",
+                className="sd-scroll",
+                tabIndex=0,
+                role="region",
+                **hyphened(aria_label=caption or str(head[0])),
             ),
             *([dmc.Text(note, size="xs", c="dimmed", mt=4)] if note else []),
         ]

@@ -18,11 +18,11 @@ from frontend.panels import history
 from frontend.results import Results
 from frontend.theme import FINAL
 
-OPTIONS = ("line", "scale", "response", "seed")
+OPTIONS = ("line", "scale", "response", "seed", "motion")
 
 
 def layout(run_id: str = "", tab: str = "overview", **query: Any) -> Any:
-    """`/runs/{run_id}?tab=&line=&scale=&response=&seed=` opens exactly what was on the screen."""
+    """`/runs/{run_id}?tab=&line=&scale=&response=&seed=&motion=` opens exactly what was on the screen."""
     options = {name: query[name] for name in OPTIONS if query.get(name)}
     return dmc.Stack(
         [
@@ -34,10 +34,13 @@ def layout(run_id: str = "", tab: str = "overview", **query: Any) -> Any:
             dcc.Store(id="run-address"),
             html.Div([run_head.layout(run_id), html.Div(id="run-messages")]),
             dmc.Tabs(
-                [dmc.TabsList(id="run-tab-list", children=tab_list([]))],
+                [
+                    dmc.TabsList(id="run-tab-list", children=tab_list([])),
+                    *(dmc.TabsPanel([], value=panel.key) for panel in panels.PANELS),  # what the tabs' ARIA refers to
+                ],
                 id="run-tabs",
                 value=panels.find(tab).key,
-                keepMounted=False,
+                keepMounted=True,
                 className="sd-tabs",
             ),
             html.Div(dmc.Skeleton(h=240), id="run-panel", role="tabpanel"),
@@ -57,8 +60,6 @@ def register(app: Dash) -> None:
         live("slowdrift", "openRun"),
         Output("run-page", "data-live"),
         Input("run-id", "data"),
-        State("run-tabs", "value"),
-        State("prefix", "data"),
     )
     app.clientside_callback(
         live("slowdrift", "paintRun"),
@@ -107,6 +108,7 @@ def register(app: Dash) -> None:
         prevent_initial_call=True,
     )(choose)
     history.register(app)
+    run_head.register_sharing(app, "run")
     app.callback(
         Output("notices", "sendNotifications", allow_duplicate=True),
         Input("run-cancel", "n_clicks"),

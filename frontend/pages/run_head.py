@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import dash_mantine_components as dmc
-from dash import dcc, html
+from dash import ClientsideFunction, Dash, Input, Output, dcc, html
 
 from frontend.components.attributes import hyphened
 from frontend.components.links import button_link, page_path, rest
@@ -31,7 +31,7 @@ def layout(run_id: str) -> Any:
             dmc.Group(
                 [
                     html.Div([title, dmc.Text(id="run-facts", size="sm", c="dimmed", mt=2)]),
-                    dmc.Group([cancel, dmc.Group(id="run-actions", gap="xs")], gap="xs"),
+                    dmc.Group([cancel, *sharing("run"), dmc.Group(id="run-actions", gap="xs")], gap="xs"),
                 ],
                 justify="space-between",
             ),
@@ -48,6 +48,24 @@ def layout(run_id: str) -> Any:
             ),
         ]
     )
+
+
+def sharing(page: str) -> list[Any]:
+    """Share and Print, of a run or a comparison."""
+    return [
+        dmc.Button("Share", id=f"{page}-share", variant="default", size="xs", className="sd-own"),
+        dmc.Button("Print", id=f"{page}-print", variant="default", size="xs", className="sd-no-print"),
+    ]
+
+
+def register_sharing(app: Dash, page: str) -> None:
+    for act in ("share", "print"):
+        app.clientside_callback(
+            ClientsideFunction("slowdrift", act),
+            Output(f"{page}-{act}", "data-asked"),
+            Input(f"{page}-{act}", "n_clicks"),
+            prevent_initial_call=True,
+        )
 
 
 def facts(run: dict[str, Any]) -> str:

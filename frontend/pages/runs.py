@@ -1,54 +1,30 @@
-"""Home: the runs of the project, newest first, one server-side page at a time, live."""
+"""Home: the runs of the project, filtered, sorted and paged by the service, live."""
 
 from __future__ import annotations
 
 from typing import Any
 
-import dash_ag_grid as dag
 import dash_mantine_components as dmc
-from dash import ClientsideFunction, Dash, Input, Output, State, ctx, dcc, html, no_update
+from dash import ClientsideFunction, Dash, Input, Output, State, ctx, html, no_update
 
 from frontend.client import attempt, client
-from frontend.components.attributes import hyphened
 from frontend.components.links import button_link
-from frontend.components.messages import empty, refusal
-from frontend.components.shell import notice
-from frontend.theme import STATE_COLOUR
-
-PAGE_SIZE = 25
-ALL = "all"
-COLUMNS: list[dict[str, Any]] = [
-    {"field": "case_name", "headerName": "Run", "cellRenderer": "RunLink", "flex": 2, "minWidth": 120,
-     "cellClass": "sd-wrap"},
-    {"field": "state", "headerName": "State", "cellRenderer": "RunState", "width": 190, "minWidth": 110},
-    {"field": "analyses", "headerName": "Analyses", "valueFormatter": {"function": "runAnalyses(params)"},
-     "flex": 2, "minWidth": 200, "sortable": False},
-    {"field": "created_at", "headerName": "Created", "valueFormatter": {"function": "runMoment(params)"},
-     "width": 185},
-    {"colId": "duration", "headerName": "Duration", "valueGetter": {"function": "runSeconds(params)"},
-     "valueFormatter": {"function": "runDuration(params)"}, "width": 120},
-    {"colId": "action", "headerName": "", "cellRenderer": "RunAction", "width": 96, "minWidth": 80,
-     "sortable": False,
-     "resizable": False},
-]  # fmt: skip
+from frontend.components.messages import refusal
+from frontend.pages import runs_actions, runs_grid
 
 
-def layout(**_: Any) -> Any:
-    states = [{"value": ALL, "label": "All states"}] + [{"value": s, "label": s} for s in STATE_COLOUR]
+def layout(**query: Any) -> Any:
+    """`/?q=&state=&tag=&since=&sort=&study=&pinned=` opens the list as it was."""
+    chosen = {name: query[name] for name in runs_grid.FILTERS if query.get(name)}
     return dmc.Stack(
         [
-            dcc.Store(id="runs-refresh", data=0),
-            dcc.Store(id="runs-trail", data=[None]),
-            dcc.Store(id="runs-asked"),
+            *runs_grid.stores(chosen),
             dmc.Group(
                 [
                     dmc.Title("Runs", order=1),
                     dmc.Group(
                         [
-                            dmc.Select(
-                                id="runs-state", data=states, value=ALL, allowDeselect=False, w=140,
-                                **hyphened(aria_label="State"),
-                            ),
+                            dmc.Button("Compare", id="runs-compare", variant="default", disabled=True),
                             button_link("New run", "/new"),
                         ],
                         gap="sm",
@@ -56,79 +32,47 @@ def layout(**_: Any) -> Any:
                 ],
                 justify="space-between",
             ),
+            runs_grid.filter_bar(chosen),
             html.Div(
                 [
                     html.Div(id="runs-error"),
                     html.Div(id="runs-empty"),
-                    html.Div(_grid(), id="runs-box", style={"display": "none"}),
+                    html.Div(runs_grid.grid(), id="runs-box", style={"display": "none"}),
                 ]
             ),
-            _confirm(),
+            runs_grid.confirm(),
+            runs_grid.rename(),
         ],
         id="runs-page",
         gap="md",
-    )  # fmt: skip
-
-
-def _grid() -> list[Any]:
-    grid = dag.AgGrid(
-        id="runs-grid",
-        rowData=[],
-        columnDefs=COLUMNS,
-        getRowId="params.data.id",
-        defaultColDef={"sortable": True, "resizable": True, "suppressMovable": True},
-        dashGridOptions={
-            "domLayout": "autoHeight",
-            "rowHeight": 46,
-            "theme": {"function": "runsTheme(themeQuartz)"},
-            "suppressCellFocus": False,
-            "animateRows": False,
-            "tooltipShowDelay": 300,
-        },
-        style={"width": "100%"},
-    )
-    pager = dmc.Group(
-        [
-            dmc.Text(id="runs-total", size="sm", c="dimmed"),
-            dmc.Group(
-                [
-                    dmc.Button("Newer", id="runs-newer", variant="default", size="xs", disabled=True),
-                    dmc.Button("Older", id="runs-older", variant="default", size="xs", disabled=True),
-                ],
-                gap="xs",
-            ),
-        ],
-        justify="space-between",
-        mt="sm",
-    )
-    return [grid, pager]
-
-
-def _confirm() -> dmc.Modal:
-    return dmc.Modal(
-        [
-            dmc.Text("Its results go with it. The case stays.", size="sm"),
-            dmc.Group(
-                [
-                    dmc.Button("Keep", id="runs-keep", variant="default"),
-                    dmc.Button("Delete", id="runs-delete", color="red"),
-                ],
-                justify="flex-end",
-                mt="md",
-            ),
-        ],
-        id="runs-confirm",
-        title="Delete this run?",
-        centered=True,
     )
 
 
 def register(app: Dash) -> None:
+    live = ClientsideFunction
+    app.clientside_callback(live("slowdrift", "openRuns"), Output("runs-page", "data-live"), Input("runs-page", "id"))
+    app.clientside_callback(live("slowdrift", "fitRuns"), Output("runs-page", "data-fit"), Input("runs-box", "style"))
     app.clientside_callback(
-        ClientsideFunction("slowdrift", "openRuns"), Output("runs-page", "data-live"), Input("runs-page", "id")
+        live("slowdrift", "filters"),
+        Output("runs-filters", "data"),
+        *(Input(f"runs-{name}", prop) for name, prop in FIELDS),
+        State("runs-filters", "data"),
+        prevent_initial_call=True,
     )
     app.clientside_callback(
-        ClientsideFunction("slowdrift", "fitRuns"), Output("runs-page", "data-fit"), Input("runs-box", "style")
+        live("slowdrift", "comparable"),
+        Output("runs-compare", "disabled"),
+        Output("runs-compare", "children"),
+        Input("runs-grid", "selectedRows"),
+        prevent_initial_call=True,
+    )
+    app.clientside_callback(
+        live("slowdrift", "compareRuns"),
+        Output("runs-page", "data-compare"),
+        Input("runs-compare", "n_clicks"),
+        State("runs-grid", "selectedRows"),
+        State("prefix", "data"),
+        prevent_initial_call=True,
     )
     app.callback(
         Output("runs-grid", "rowData"),
@@ -140,84 +84,43 @@ def register(app: Dash) -> None:
         Output("runs-box", "style"),
         Output("runs-error", "children"),
         Input("runs-refresh", "data"),
-        Input("runs-state", "value"),
+        Input("runs-filters", "data"),
         Input("runs-newer", "n_clicks"),
         Input("runs-older", "n_clicks"),
         State("runs-trail", "data"),
     )(show)
-    app.callback(
-        Output("runs-asked", "data"),
-        Output("runs-confirm", "opened"),
-        Output("notices", "sendNotifications"),
-        Input("runs-grid", "cellRendererData"),
-        prevent_initial_call=True,
-    )(act)
-    app.callback(
-        Output("runs-confirm", "opened", allow_duplicate=True),
-        Output("runs-refresh", "data"),
-        Output("notices", "sendNotifications", allow_duplicate=True),
-        Input("runs-delete", "n_clicks"),
-        Input("runs-keep", "n_clicks"),
-        State("runs-asked", "data"),
-        State("runs-refresh", "data"),
-        prevent_initial_call=True,
-    )(delete)
+    runs_actions.register(app)
 
 
-def show(_refresh: int, state: str, _newer: int | None, _older: int | None, trail: list[str | None]) -> tuple[Any, ...]:
+# filter -> the property that holds it, in the order that assets/grid.js takes them
+FIELDS = (
+    ("q", "value"),
+    ("state", "value"),
+    ("tag", "value"),
+    ("since", "value"),
+    ("sort", "value"),
+    ("pinned", "checked"),
+)
+
+
+def show(
+    _refresh: int, chosen: dict[str, Any] | None, _newer: int | None, _older: int | None, trail: list[str | None]
+) -> tuple[Any, ...]:
     """One page. `trail` holds the cursors walked so far: the last one is this page's, and one more leads on."""
     asked = ctx.triggered_id
-    if asked == "runs-state":
+    if asked == "runs-filters":
         trail = [None]
     elif asked == "runs-newer" and len(trail) > 2:
         trail = trail[:-2]
     elif asked != "runs-older" and len(trail) > 1:
         trail = trail[:-1]
-    wanted = None if state == ALL else state
-    page, error = attempt(lambda: client().get("/runs", limit=PAGE_SIZE, cursor=trail[-1], state=wanted))
+    wanted = runs_grid.asked(chosen or {})
+    page, error = attempt(lambda: client().get("/runs", limit=runs_grid.PAGE_SIZE, cursor=trail[-1], **wanted))
     if error:
         return no_update, no_update, "", True, True, None, {"display": "none"}, refusal(error)
     items, following = page["items"], page.get("next_cursor")
     first = len(trail) == 1
     walked = [*trail, following]  # always one longer than the pages shown
-    hint = None if items or not first else nothing(state)
+    hint = None if items or not first else runs_grid.nothing(chosen or {})
     style = {"display": "none"} if hint else {}
-    return items, walked, _count(page.get("total"), len(items)), first, following is None, hint, style, None
-
-
-def _count(total: int | None, here: int) -> str:
-    if total is None:
-        return f"{here} runs"
-    return f"{total} run{'s' if total != 1 else ''}" + (f", {here} on this page" if total > here else "")
-
-
-def nothing(state: str) -> Any:
-    if state != ALL:
-        return dmc.Text(f"No run is {state}.", c="dimmed")
-    return empty(
-        "No runs yet",
-        "A run computes one case: where the vessel settles, how it moves in waves and in slow drift, and what its "
-        "mooring lines carry. Start from an example; it takes a few seconds.",
-        button_link("Start from an example", "/new"),
-    )
-
-
-def act(clicked: dict[str, Any] | None) -> tuple[Any, ...]:
-    """A row's button: cancel at once, delete only after a question."""
-    value = (clicked or {}).get("value") or {}
-    if value.get("action") == "delete":
-        return value["id"], True, no_update
-    if value.get("action") == "cancel":
-        _, error = attempt(lambda: client().post(f"/runs/{value['id']}/cancel"))
-        text = notice("Not cancelled", error.text, "red") if error else notice("Cancelling", "The run stops shortly.")
-        return no_update, no_update, text
-    return no_update, no_update, no_update
-
-
-def delete(_delete: int | None, _keep: int | None, run_id: str | None, refresh: int) -> tuple[Any, ...]:
-    if ctx.triggered_id != "runs-delete" or not run_id:
-        return False, no_update, no_update
-    _, error = attempt(lambda: client().delete(f"/runs/{run_id}"))
-    if error:
-        return False, no_update, notice("Not deleted", error.text, "red")
-    return False, refresh + 1, notice("Run deleted")
+    return items, walked, runs_grid.count(page.get("total"), len(items)), first, following is None, hint, style, None

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from frontend.panels import along, case, history, modes, overview, raos, shape, spectra
+from frontend.panels import along, case, history, modes, motion, overview, raos, shape, spectra
 from frontend.results import Results
 
 
@@ -25,6 +25,7 @@ PANELS = (
     Panel("raos", "RAOs", raos.applies, raos.render),
     Panel("lines", "Along lines", along.applies, along.render),
     Panel("shape", "Static shape", shape.applies, shape.render),
+    Panel("motion", "Motion", motion.applies, motion.render),
     Panel("modes", "Modes", modes.applies, modes.render),
     Panel("case", "Case and provenance", case.applies, case.render),
 )

@@ -130,7 +130,7 @@ def vessel_table(summary: dict[str, Any]) -> Any:
     return table("Vessel motion", ["Motion", *columns], rows, min_width=420, note=_storm(summary, bool(probable)))
 
 
-def domains_table(summary: dict[str, Any]) -> Any:
+def domains_table(summary: dict[str, Any], caption: str = "σ of motion, domains side by side") -> Any:
     """σ of motion from both domains, side by side; None without a time domain."""
     time = summary.get("time_domain") or {}
     spread, error = time.get("vessel_std") or {}, time.get("vessel_std_error") or {}
@@ -161,7 +161,7 @@ def domains_table(summary: dict[str, Any]) -> Any:
     words = f"{count} seed{'s' if count != 1 else ''} of {seconds(time.get('duration'))}; ± is the standard error."
     if same:
         words += " Same waves: the frequency domain's response to the very waves of these seeds."
-    return table("σ of motion, domains side by side", head, rows, min_width=680, note=words)
+    return table(caption, head, rows, min_width=680, note=words)
 
 
 def _scattered(value: float, error: float | None) -> str:

@@ -61,14 +61,18 @@ def parse_case(data: Any) -> Case:
     try:
         case = Case.model_validate(data)
     except ValidationError as error:
-        found = [_field_error(item) for item in error.errors(include_url=False)]
-        raise CaseError(_telling(found)) from None
+        raise CaseError(field_errors(error)) from None
     except RecursionError:
         raise CaseError([FieldError((), "the case is nested too deeply to be read")]) from None
     errors = list(_cross_checks(case))
     if errors:
         raise CaseError(errors)
     return case
+
+
+def field_errors(error: ValidationError) -> list[FieldError]:
+    """Every fault of a field, with its value and the allowed range; without those that only follow from another."""
+    return _telling([_field_error(item) for item in error.errors(include_url=False)])
 
 
 _TAGS = {"jonswap", "pierson-moskowitz", "tabulated", "regular"}
@@ -267,15 +271,10 @@ def _time_domain(case: Case) -> Iterator[FieldError]:
     if not case.lines:
         yield FieldError(loc, "the time domain needs at least one line")
     for name, line in case.lines.items():
-        if line.end_a.fairlead is not None:
+        if line.end_a.fairlead is not None and line.end_b.fairlead is not None:
             yield FieldError(
-                ("lines", name, "end_a", "fairlead"),
-                "the time domain takes a fairlead at end b only; turn the line round",
+                ("lines", name, "end_a", "fairlead"), "the time domain takes a fairlead at one end of a line only"
             )
-    if case.environment.regular and case.environment.random:
-        yield FieldError(
-            ("environment", "seastates"), "the time domain takes random waves or regular waves, not both together"
-        )
     waves = [sea.period for sea in case.environment.regular]
     motions = [item for item in harmonic_frequencies(case) if item[0][0] == "lines"]
     if waves and max(waves) - min(waves) > 1e-9 * max(waves):

@@ -63,7 +63,7 @@ def load_case(text: str | bytes) -> Case:
     try:
         return parse_case(data)
     except CaseError as error:
-        raise CaseError([_with_line(item, lines) for item in error.errors]) from None
+        raise CaseError([with_line(item, lines) for item in error.errors]) from None
 
 
 def read_text(text: str | bytes) -> tuple[Any, dict[tuple[str | int, ...], int]]:
@@ -87,8 +87,21 @@ def read_text(text: str | bytes) -> tuple[Any, dict[tuple[str | int, ...], int]]
         raise CaseError([FieldError((), f"nested too deeply; allowed: at most {MAX_DEPTH} levels")]) from None
 
 
+_PAIR = re.compile(r"(?<!\\)((?:\\\\)*)\\u([dD][89abAB][0-9a-fA-F]{2})\\u([dD][c-fC-F][0-9a-fA-F]{2})")
+
+
+def _whole_letters(text: str) -> str:
+    """JSON writes letters beyond 16 bits as two escapes, which YAML does not know: one escape in their place."""
+    return _PAIR.sub(
+        lambda found: f"{found[1]}\\U{0x10000 + ((int(found[2], 16) & 0x3FF) << 10) + (int(found[3], 16) & 0x3FF):08x}",
+        text,
+    )
+
+
 def _compose(text: str) -> yaml.Node:
     depth = 0
+    if text.lstrip().startswith("{"):
+        text = _whole_letters(text)
     for event in yaml.parse(text, Loader=_Loader):  # a cheap pass, so that deep nesting never recurses
         depth += isinstance(event, yaml.CollectionStartEvent)
         depth -= isinstance(event, yaml.CollectionEndEvent)
@@ -156,7 +169,8 @@ def _plain(loc: tuple[str | int, ...], node: yaml.Node, is_key: bool = False) ->
         )
 
 
-def _with_line(error: FieldError, lines: dict[tuple[str | int, ...], int]) -> FieldError:
+def with_line(error: FieldError, lines: dict[tuple[str | int, ...], int]) -> FieldError:
+    """The error with the line of its field, or of what holds it."""
     loc = error.loc
     while loc and loc not in lines:
         loc = loc[:-1]

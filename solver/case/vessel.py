@@ -6,7 +6,20 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from .quantities import DOF, Angle, Force, Frequency, Matrix6, Moment, Part, PositiveLength, PositiveMass, Vector3
+from .quantities import (
+    DOF,
+    Acceleration,
+    Angle,
+    Density,
+    Force,
+    Frequency,
+    Matrix6,
+    Moment,
+    Part,
+    PositiveLength,
+    PositiveMass,
+    Vector3,
+)
 
 
 class Diagonal(Part):
@@ -48,9 +61,36 @@ class ConstantLoad(Part):
         return tuple(getattr(self, dof) for dof in DOF)
 
 
+class WamitFiles(Part):
+    """What WAMIT's numeric files do not say of themselves. Over REST it is given with the upload instead."""
+
+    length: PositiveLength | None = None
+    """ULEN, the length that made the values dimensionless; needed unless `values` is dimensional."""
+    values: Literal["nondimensional", "dimensional"] = "nondimensional"
+    """Values divided by powers of ρ, g, ω and ULEN, as WAMIT writes them, or in SI."""
+    density: Density | None = None
+    """Water density of the computation; the case's own when left out."""
+    gravity: Acceleration | None = None
+    """Gravity of the computation; the case's own when left out."""
+    depth: PositiveLength | None = None
+    """Water depth of the computation; the case's own when left out."""
+    first_column: Literal["auto", "periods", "frequencies"] = "auto"
+    """Whether the first column holds periods in s or frequencies in rad/s; `auto` tells by the heave force."""
+    pair_columns: Literal["auto", "periods", "frequencies"] = "auto"
+    """The same for the two first columns of the QTF; `auto` tells by the other files' range."""
+    pair_order: Literal["first-minus-second", "second-minus-first"] = "first-minus-second"
+    """Which difference the QTF's phase goes with: e^{i(ω1-ω2)t}, WAMIT's, or e^{i(ω2-ω1)t}."""
+    drift: Literal["auto", ".8", ".9"] = "auto"
+    """Mean drift from momentum (.8: surge, sway, yaw) or from pressure (.9); `auto` takes .8 when it is there."""
+    centre_of_mass: Vector3 | None = None
+    """Centre of gravity of the computation, which the .hst contains; the reference point when gravity was left out."""
+
+
 class Hydrodynamics(Part):
     data: Annotated[str, Field(min_length=1, max_length=300)]
     """Hydrodynamic data: a path relative to the case file on the command line; over REST the id or hash of a data set."""
+    wamit: WamitFiles | None = None
+    """Conventions of WAMIT files on the command line, where `data` is a folder, a stem or one file of the set."""
     radiation: Literal["constant", "cummins"] = "cummins"
     """`constant`: added mass and damping at `frequency`; `cummins`: the transform of the retardation functions."""
     frequency: Frequency | None = None

@@ -37,13 +37,15 @@ class Loads:
 class Response:
     """Responses of one band. vessel : complex (R, 6, W); covariance : per line (N+1, 6) of relative velocity [m²/s²].
 
-    tension : complex (R, N, W) per line and moment : complex (R, 2, N+1, W), in and out of plane, when asked for.
+    tension : complex (R, N, W) per line and moment : complex (R, 2, N+1, W), in and out of plane, and
+    motion : complex (N+1, 3, W) under the first load, when asked for.
     """
 
     vessel: Array | None
     covariance: list[Array]
     tension: list[Array] = field(default_factory=list)
     moment: list[Array] = field(default_factory=list)
+    motion: list[Array] = field(default_factory=list)
     condensed: Array | None = None
 
 
@@ -66,6 +68,7 @@ def respond(
     vessel_parts: list[Array] = []
     tensions: list[list[Array]] = [[] for _ in geometries]
     moments: list[list[Array]] = [[] for _ in geometries]
+    motions: list[list[Array]] = [[] for _ in geometries]
     condensed_parts: list[Array] = []
     for window in _windows(geometries, R, W):
         solved = [
@@ -90,12 +93,14 @@ def respond(
                 Tr, Ti = tension_response(g.line.arrays, g.x, Yr, Yi)
                 tensions[index].append(Tr + 1j * Ti)
                 moments[index].append(moment(g, Yr, Yi))
+                motions[index].append(Yr[0] + 1j * Yi[0])
     if vessel_parts:
         result.vessel = np.concatenate(vessel_parts, axis=-1)
         result.condensed = np.concatenate(condensed_parts, axis=0)
     if full:
         result.tension = [np.concatenate(parts, axis=-1) for parts in tensions]
         result.moment = [np.concatenate(parts, axis=-1) for parts in moments]
+        result.motion = [np.concatenate(parts, axis=-1) for parts in motions]
     _check(result)
     return result
 

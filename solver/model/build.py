@@ -14,7 +14,7 @@ from ..case import Case
 from ..case.analysis import Statics
 from ..case.environment import RegularWave
 from ..outcome import DataError
-from ..vessel.data import DataSource, HydrodynamicData
+from ..vessel.data import DataSource, HydrodynamicData, open_for
 from .line import LineModel, build_line
 from .vessel import VesselModel, build_vessel
 
@@ -59,7 +59,7 @@ def build(case: Case, data: DataSource | None) -> Model:
     if case.vessel is not None and case.vessel.hydrodynamics is not None:
         if data is None:
             raise DataError("the case refers to hydrodynamic data, but no source of data was given")
-        hydro = data.open(case.vessel.hydrodynamics.data)
+        hydro = open_for(data, case.vessel.hydrodynamics, case.environment)
     vessel, warnings = build_vessel(case, hydro) if case.vessel is not None else (None, ())
     return Model(case, frame, lines, vessel, hydro, (*warnings, *_left_out(case)))
 

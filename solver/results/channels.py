@@ -233,6 +233,34 @@ def _curvature(solved: Solved, name: str) -> Made:
     return curvature, (_nodes(solved, name),)
 
 
+MOST_SHAPES = 32  # frequencies at which the motion of a whole line is kept
+
+
+def _shape_picks(solved: Solved) -> Array:
+    """Indices of evenly spaced wave frequencies, the first and the last among them."""
+    count = solved.omega_wave.size
+    return np.unique(np.linspace(0, count - 1, min(count, MOST_SHAPES)).round().astype(int))
+
+
+def _line_motion(quantity: str, random: bool, unit: str, part: Callable[[Array], Array], text: str) -> None:
+    @channel("frequency", "line", quantity, unit, text, "wf")
+    def _value(solved: Solved, name: str) -> Made:
+        if solved.frequency is None or solved.is_random is not random:
+            return None
+        picks = _shape_picks(solved) if random else np.zeros(1, int)
+        motion = np.moveaxis(solved.frequency.wave.motion[solved.index(name)][:, :, picks], -1, 0)
+        axis = Axis("omega", "rad/s", solved.omega_wave[picks])
+        turned = solved.earth(motion.real) + 1j * solved.earth(motion.imag)
+        return part(turned), (axis, _nodes(solved, name), XYZ)
+
+
+_MOTION = "of the motion of the nodes, earth axes, "
+_line_motion("motion_rao_amplitude", True, "m/m", np.abs, "RAO " + _MOTION + "first wave system, some frequencies")
+_line_motion("motion_rao_phase", True, "rad", np.angle, "Phase lead " + _MOTION + "on the elevation at (0, 0)")
+_line_motion("motion_amplitude", False, "m", np.abs, "Amplitude " + _MOTION + "in harmonic motion")
+_line_motion("motion_phase", False, "rad", np.angle, "Phase lead " + _MOTION + "in harmonic motion")
+
+
 def _mode_axis(solved: Solved) -> Axis:
     assert solved.modes is not None
     return Axis("mode", "", np.arange(1.0, len(solved.modes.modes) + 1))

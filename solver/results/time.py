@@ -21,13 +21,16 @@ KEY = "time_domain_part"
 RANGES = 50  # of rainflow counts
 
 
-def time_part(record: Record, timing: Timing, lines: list[dict[str, Any]], border: float, omega: float | None) -> Part:
+def time_part(
+    record: Record, timing: Timing, lines: list[dict[str, Any]], border: float, omega: float | None, random: bool,
+    periodic: bool,
+) -> Part:  # fmt: skip
     """One chunk's seeds as arrays that merge. lines : name, gap (padding elements) and arc_length of each.
 
-    omega : the frequency of harmonic motion, None in random waves.
+    omega : the frequency of regular waves or prescribed motion, None without; random : whether there are random waves.
+    periodic : whether the record is a whole number of periods of everything that moves.
     """
     step = timing.every * timing.h
-    periodic = omega is None
     low, high, mean = band_variances(record.tension, step, border, periodic)
     arrays = {
         "vessel": record.vessel.astype(np.float32), "top": record.tension[:, -1].copy(), "ends": record.ends.astype(np.float32),
@@ -38,7 +41,8 @@ def time_part(record: Record, timing: Timing, lines: list[dict[str, Any]], borde
     head = {
         "seeds": record.seeds, "lines": lines, "border": border, "omega": omega, "h": timing.h, "every": timing.every,
         "build_up": timing.build_up, "kept": timing.kept, "iterations": record.iterations, "retries": record.retries,
-        "wall_time": record.wall_time, "findings": [one.as_dict() for one in record.findings],
+        "wall_time": record.wall_time, "findings": [one.as_dict() for one in record.findings], "random": random,
+        "periodic": periodic,
     }  # fmt: skip
     return Part({KEY: head}, (), arrays)
 
@@ -58,7 +62,12 @@ class TimeResult:
 
     @property
     def periodic(self) -> bool:
-        return self.head["omega"] is None
+        return bool(self.head["periodic"])
+
+    @property
+    def random(self) -> bool:
+        """Whether there are random waves, so that a spectrum says something."""
+        return bool(self.head["random"])
 
     @property
     def border(self) -> float:
@@ -178,7 +187,7 @@ def _motion(result: TimeResult, dof: str) -> Made:
     "time", "vessel", "{dof}_spectrum", "[x]2 s/rad", "Spectrum of {which}: mean periodogram, smoothed over 0.005 rad/s"
 )
 def _motion_spectrum(result: TimeResult, dof: str) -> Made:
-    if not np.any(result.arrays["vessel"]) or not result.periodic:
+    if not np.any(result.arrays["vessel"]) or not result.random:
         return None
     return _spectrum(result, result.motion(dof))
 
@@ -207,7 +216,7 @@ _history("end_a", "end_a_tension", "History of the reaction at end a")
     "Spectrum of tension of the element at end b, smoothed over 0.005 rad/s",
 )
 def _top_spectrum(result: TimeResult, name: str) -> Made:
-    return _spectrum(result, result.history(name, "top")) if result.periodic else None
+    return _spectrum(result, result.history(name, "top")) if result.random else None
 
 
 def _along(quantity: str, text: str, band: str, make: Any) -> None:

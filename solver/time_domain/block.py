@@ -14,14 +14,15 @@ from ..kernels.march import march
 from ..model.build import Model
 from ..outcome import CaseError, FieldError, NotConverged
 from ..statics.solve import StaticState
+from .facing import facing
 from .lanes import make_body, make_lines, make_memory, make_state, make_watch, make_work, padded_shapes
+from .pace import stride
 from .scheme import SCHEMES
 from .sea import Components, VesselLoads, components
 from .water import Water
 
 Array = np.ndarray
 LANES_WANTED = 8
-BLOCK_SECONDS = 60.0  # of simulated time between progress reports
 REFRESH = 8  # steps between renewals of Newton's matrix
 WATER_BYTES = 160e6  # of water tables in a block: longer records are cut into windows
 
@@ -60,7 +61,9 @@ class Run:
     """An ensemble: everything that its seeds share."""
 
     def __init__(self, model: Model, static: StaticState, spec: TimeDomain):
-        self.model, self.static, self.spec = model, static, spec
+        self.model, self.spec = model, spec
+        self.static, self.turned = facing(static)
+        static = self.static
         self.time = timing(spec)
         self.total = self.time.build_up + self.time.kept
         self.scheme = SCHEMES[spec.scheme]
@@ -77,11 +80,6 @@ class Run:
         self.limits = np.array(
             [spec.tolerance * element, 100.0 * spec.tolerance * tension, spec.max_iterations, REFRESH]
         )
-
-    @property
-    def stride(self) -> int:
-        """Steps between progress reports: whole renewals of Newton's matrix, so that a resumed run begins with one."""
-        return max(int(BLOCK_SECONDS / self.time.h) // REFRESH, 1) * REFRESH
 
     def blocks(self, seeds: list[int]) -> list[list[int]]:
         """Seeds cut into blocks of about LANES_WANTED lanes."""
@@ -110,7 +108,11 @@ class Block:
         self.work, self.spare = (make_work(self.state, rows, first) for _ in range(2))
         self.step = 0
         P, Q, n = self.state.x.shape[0], S * L, run.time.outputs
-        self.out = (np.zeros((n, S, 6)), np.zeros((n, P - 1, Q), dtype=np.float32), np.zeros((n, 2, Q)))
+        self.out: tuple[Array, Array, Array] = (
+            np.zeros((n, S, 6)),
+            np.zeros((n, P - 1, Q), dtype=np.float32),
+            np.zeros((n, 2, Q)),
+        )
         self.watch = make_watch(P, Q)
         self.counts = np.zeros(3, dtype=np.int64)
         self._mark()
@@ -168,6 +170,11 @@ class Block:
         self.setup = self.setup._replace(sea=sea._replace(water=table, water_first=first))
 
     @property
+    def stride(self) -> int:
+        """Steps between progress reports."""
+        return stride(self.run.time.h, self.state.x.shape[0], self.state.x.shape[2], REFRESH)
+
+    @property
     def done(self) -> bool:
         return self.step >= self.run.total
 
@@ -219,7 +226,8 @@ class Block:
 
     def arrays(self) -> dict[str, Array]:
         """Everything needed to go on elsewhere, as of the last stride; output after that is written again."""
-        return {**self.mark, "out/vessel": self.out[0], "out/tension": self.out[1], "out/ends": self.out[2]}
+        vessel, tension, ends = (values[: self.mark["counts"][2]] for values in self.out)
+        return {**self.mark, "out/vessel": vessel, "out/tension": tension, "out/ends": ends}
 
     def restore(self, arrays: dict[str, Array]) -> None:
         """Go on from what `arrays` gave."""
@@ -227,6 +235,6 @@ class Block:
         self.watch = Watch(*(np.ascontiguousarray(arrays[f"watch/{name}"]) for name in Watch._fields))
         self.step = int(arrays["step"])
         self.counts[:] = arrays["counts"]
-        vessel, tension, ends = self.out
-        vessel[:], tension[:], ends[:] = arrays["out/vessel"], arrays["out/tension"], arrays["out/ends"]
+        for values, name in zip(self.out, ("vessel", "tension", "ends"), strict=True):
+            values[: self.counts[2]] = arrays[f"out/{name}"]
         self._mark()

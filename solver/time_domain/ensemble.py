@@ -16,6 +16,7 @@ from ..model.build import Model
 from ..outcome import Cancelled
 from ..statics.solve import StaticState
 from .block import Block, Run, Timing
+from .facing import turn_back
 from .resolution import Finding, Seen, findings
 
 Array = np.ndarray
@@ -79,7 +80,7 @@ def march_ensemble(
         blocks[index] = block
         while not block.done:
             between()
-            block.go(run.stride)
+            block.go(block.stride)
         block.release()
 
     if threads <= 1 or len(groups) == 1:
@@ -149,11 +150,14 @@ def _gather(run: Run, blocks: list[Block]) -> Record:
         return np.concatenate([seeds_last(getattr(block.watch, name)) for block in blocks], axis=-1)
 
     lowest, highest = joined("range")
-    return Record(
+    found = findings(run, Seen(lowest, highest, joined("kink"), joined("bed"), joined("reach")))
+    record = Record(
         [seed for block in blocks for seed in block.seeds],
         np.concatenate([block.out[0] for block in blocks], axis=1),
         np.concatenate([seeds_last(block.out[1]) for block in blocks], axis=-1),
         np.concatenate([seeds_last(block.out[2]) for block in blocks], axis=-1),
         lowest, highest, int(sum(block.counts[0] for block in blocks)), int(sum(block.counts[1] for block in blocks)),
-        findings=findings(run, Seen(lowest, highest, joined("kink"), joined("bed"), joined("reach"))),
+        findings=found,
     )  # fmt: skip
+    turn_back(run.static, run.turned, (record.tension, record.lowest, record.highest), record.ends)
+    return record

@@ -8,7 +8,6 @@ from ..kernels import lanes as row
 from ..kernels.arrays import Body, Lines, Memory, State, Watch, Work
 from ..model.build import Model
 from ..model.line import LineModel, current_profile, harmonic_omega
-from ..outcome import CaseError, FieldError
 from ..statics.solve import StaticState
 from ..vessel.radiation import Retardation
 from ..vessel.rigid import turned
@@ -63,12 +62,6 @@ def make_lines(model: Model, static: StaticState, seeds: int, first_wave: int) -
     lines, shapes = static.lines, padded_shapes(static)
     P, Q = shapes[0].shape[0], seeds * len(lines)
     gaps = [P - line.nodes for line in lines]
-    for line in lines:
-        if line.end_a.kind == "fairlead":
-            raise CaseError([FieldError(
-                ("lines", line.name, "end_a", "fairlead"),
-                "the time domain takes a fairlead at end b only; turn the line round, or use the frequency domain",
-            )])  # fmt: skip
     tile = lambda parts: np.ascontiguousarray(np.tile(np.stack(parts, axis=-1), seeds))  # noqa: E731
     free = []
     for gap in gaps:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -75,7 +75,10 @@ def findings(run: Run, seen: Seen) -> list[Finding]:
     out: list[Finding] = []
     for index, line in enumerate(run.static.lines):
         of_line = Seen(*(part[..., index, :] for part in seen))
-        out += [*_kinks(line, of_line), *_blows(line, of_line), *_reaches(run, line, of_line)]
+        found = [*_kinks(line, of_line), *_blows(line, of_line)]
+        if index in run.turned:  # the march counts it from its other end
+            found = [replace(one, place=line.length - one.place) for one in found]
+        out += [*found, *_reaches(run, line, of_line)]
     for one in out:
         if one.value > limits[one.what]:
             raise NotConverged(

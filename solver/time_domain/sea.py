@@ -21,35 +21,55 @@ LEAST_STEPS = 10  # of the march in the shortest wave or prescribed motion
 
 @dataclass(frozen=True)
 class Components:
-    """Wave components on an even grid. omega (N,) = (first + n) dω; direction, spectrum density (N,) of each system."""
+    """Wave components of every wave system on one even grid.
+
+    omega (N,) = (first + n) dω [rad/s]; directions of the systems [rad]; densities (N,) of each, zero outside `band`
+    and for a regular wave; fixed : complex amplitudes (N,) of a regular wave [m], None for a random system.
+    """
 
     omega: Array
     step: float
     first: int
     directions: tuple[float, ...]
     densities: tuple[Array, ...]
-    regular: tuple[complex, ...] = ()
+    fixed: tuple[Array | None, ...]
+    band: slice
 
     @property
     def period(self) -> float:
         """Time after which every component repeats [s]."""
         return 2 * math.pi / self.step
 
+    @property
+    def regular(self) -> bool:
+        """Whether every system is a regular wave."""
+        return all(one is not None for one in self.fixed)
+
+    @property
+    def variances(self) -> Array:
+        """Mean variance of elevation of every component of every system (systems, N) [m2]."""
+        return np.array([
+            density * self.step if fixed is None else 0.5 * np.abs(fixed) ** 2
+            for density, fixed in zip(self.densities, self.fixed, strict=True)
+        ])  # fmt: skip
+
     def amplitudes(self, seed: int, random: bool) -> Array:
-        """Complex amplitudes (systems, N) [m] with E|A|² = 2 S dω: fixed with random phase, or Gaussian (T10)."""
-        if self.regular:
-            return np.array([[amplitude] for amplitude in self.regular])
-        out = []
-        for system, density in enumerate(self.densities):
-            draw = np.random.default_rng(np.random.SeedSequence([seed, system]))
-            size = np.sqrt(2.0 * density * self.step)
+        """Complex amplitudes (systems, N) [m]: of random systems E|A|² = 2 S dω, with random phase or Gaussian (T10)."""
+        out = np.zeros((len(self.directions), self.omega.size), dtype=complex)
+        drawn = 0
+        for row, density, fixed in zip(out, self.densities, self.fixed, strict=True):
+            if fixed is not None:
+                row[:] = fixed
+                continue
+            draw = np.random.default_rng(np.random.SeedSequence([seed, drawn]))
+            size = np.sqrt(2.0 * density[self.band] * self.step)
             if random:
-                out.append(
-                    size * (draw.standard_normal(size.size) + 1j * draw.standard_normal(size.size)) / math.sqrt(2.0)
-                )
+                row[self.band] = size * (draw.standard_normal(size.size) + 1j * draw.standard_normal(size.size))
+                row /= math.sqrt(2.0)
             else:
-                out.append(size * np.exp(2j * math.pi * draw.random(size.size)))
-        return np.array(out)
+                row[self.band] = size * np.exp(2j * math.pi * draw.random(size.size))
+            drawn += 1
+        return out
 
 
 def components(model: Model, spec: TimeDomain, kept: float) -> Components | None:
@@ -64,29 +84,44 @@ def components(model: Model, spec: TimeDomain, kept: float) -> Components | None
     if not seas:
         return None
     regular = [sea for sea, _ in seas if isinstance(sea, RegularWave)]
-    directions = tuple(heading for _, heading in seas)
-    if regular:
-        if len(regular) < len(seas) or any(abs(sea.period - regular[0].period) > 1e-9 for sea in regular):
-            raise CaseError([FieldError(
-                ("environment", "seastates"),
-                "the time domain takes random waves, or regular waves of one period, not both together",
-            )])  # fmt: skip
-        single = 2 * math.pi / regular[0].period
-        amplitudes = tuple(complex(0.5 * sea.height * np.exp(1j * sea.phase)) for sea in regular)
-        return Components(np.array([single]), single, 1, directions, (), amplitudes)
+    if any(abs(sea.period - regular[0].period) > 1e-9 for sea in regular):
+        raise CaseError([FieldError(("environment", "seastates"), "the time domain takes regular waves of one period")])
+    single = 2 * math.pi / regular[0].period if regular else None
+    if single is not None and len(regular) == len(seas):
+        return _on_grid(seas, single, single, (1, 0))
     band = (model.case.analyses.frequency_domain or FrequencyDomain()).wave
     step = float(spec.wave_step) if spec.wave_step else 2 * math.pi / kept
-    first, last = math.ceil(band.from_ / step - 1e-9), math.floor(band.to / step + 1e-9)
-    omega = step * np.arange(first, last + 1)
-    if omega.size == 0:
+    if single is not None:
+        step = single / max(round(single / step), 1)
+    lowest, highest = math.ceil(band.from_ / step - 1e-9), math.floor(band.to / step + 1e-9)
+    if highest < lowest:
         raise CaseError([FieldError(
             ("analyses", "time_domain", "wave_step" if spec.wave_step else "duration"),
             f"components {step:.3g} rad/s apart leave none between {band.from_:g} and {band.to:g} rad/s; "
             "use a longer duration or a smaller wave_step",
         )])  # fmt: skip
-    _resolved(spec, float(omega[-1]))
-    densities = tuple(spectrum(omega, sea) for sea in model.case.environment.random)
-    return Components(omega, step, first, directions, densities)
+    _resolved(spec, highest * step)
+    return _on_grid(seas, single, step, (lowest, highest))
+
+
+def _on_grid(seas: list[tuple[object, float]], single: float | None, step: float, band: tuple[int, int]) -> Components:
+    """Random systems in `band` (whole multiples of the step) and regular waves of frequency `single` on one grid."""
+    own = round(single / step) if single is not None else band[0]
+    first, last = min(band[0], own), max(band[1], own)
+    omega = step * np.arange(first, last + 1)
+    inside = slice(band[0] - first, band[1] + 1 - first)
+    densities, fixed = [], []
+    for sea, _ in seas:
+        density, amplitude = np.zeros(omega.size), None
+        if isinstance(sea, RegularWave):
+            amplitude = np.zeros(omega.size, dtype=complex)
+            amplitude[own - first] = 0.5 * sea.height * np.exp(1j * sea.phase)
+        else:
+            density[inside] = spectrum(omega[inside], sea)  # type: ignore[arg-type]
+        densities.append(density)
+        fixed.append(amplitude)
+    directions = tuple(heading for _, heading in seas)
+    return Components(omega, step, first, directions, tuple(densities), tuple(fixed), inside)
 
 
 def _resolved(spec: TimeDomain, omega: float) -> None:
@@ -98,6 +133,12 @@ def _resolved(spec: TimeDomain, omega: float) -> None:
             f"{spec.step:g} s is too coarse for a period of {2 * math.pi / omega:.3g} s; allowed: ≤ {longest:.3g} s",
             f"{spec.step:g}",
         )])  # fmt: skip
+
+
+def whole_period(spec: TimeDomain, kept: float) -> bool:
+    """Whether a kept duration [s] is a whole number of periods of the random components."""
+    periods = kept * float(spec.wave_step) / (2 * math.pi) if spec.wave_step else 1.0
+    return periods > 0.5 and abs(periods - round(periods)) < 1e-6
 
 
 def low_border(model: Model) -> float:

@@ -15,7 +15,8 @@ from .sea import Components
 
 Array = np.ndarray
 POINTS = 12  # of a table per shortest wave
-POINTS_REGULAR = 48
+REGULAR_POINTS = 24  # per regular wave in a random sea
+ALONE_POINTS = 48  # per regular wave alone
 FAINT = 1e-4  # of the largest water velocity: nodes below that feel no waves
 FAINTER = 1e-5  # the same where nodes take their waves along
 WIDE = 15.0  # m: a series is made for motions of this and the height of the sea
@@ -35,8 +36,7 @@ class Water:
         environment = model.case.environment
         self.depth, self.gravity = environment.depth, environment.water.gravity
         self.kind = MEAN if kinematics == "mean" else (EXACT if waves.regular else SERIES)
-        shortest = 2 * math.pi / float(waves.omega[-1])
-        self.count = max(math.ceil(waves.period / shortest * (POINTS_REGULAR if waves.regular else POINTS)), 8)
+        self.count = max(self._points(), 8)
         self.step = waves.period / self.count
         self.transfer = [
             [velocity(waves.omega, heading, x, self.depth, self.gravity) for heading in waves.directions]
@@ -57,35 +57,39 @@ class Water:
         """Rows of the table: 6, or 4 per order, part and wave system."""
         return 6 if self.kind != SERIES else 4 * self.orders * self.parts * len(self.waves.directions)
 
-    def _weights(self) -> list[Array]:
-        """Mean square amplitude of every component, by wave system."""
-        if self.waves.regular:
-            return [np.array([abs(amplitude) ** 2]) for amplitude in self.waves.regular]
-        return [density * self.waves.step for density in self.waves.densities]
+    def _points(self) -> int:
+        """Of the table over one period."""
+        waves = self.waves
+        most = POINTS * (waves.band.stop - 1 + waves.first)
+        for fixed in waves.fixed:
+            if fixed is not None:
+                own = waves.first + int(np.argmax(np.abs(fixed)))
+                most = max(most, (ALONE_POINTS if waves.regular else REGULAR_POINTS) * own)
+        return most
 
     def _size(self, parts: list[Array]) -> Array:
         """Largest standard deviation of water velocity per node."""
-        pairs = zip(parts, self._weights(), strict=True)
+        pairs = zip(parts, self.waves.variances, strict=True)
         total = sum(np.einsum("w,wpk->p", weight, np.abs(transfer) ** 2) for transfer, weight in pairs)
         return np.sqrt(np.asarray(total))
 
     def _parts(self) -> int:
         """1 where the part that falls with height is less than 1e-5 of the other at every node in waves, else 2."""
         low = float(self.origin[:, 2].min(initial=0.0))
-        weight = np.sum(self._weights(), axis=0) * self.waves.omega**2 * np.exp(2.0 * self.k * low)
+        weight = np.sum(self.waves.variances, axis=0) * self.waves.omega**2 * np.exp(2.0 * self.k * low)
         falling = np.exp(-4.0 * self.k * (low + self.depth))
         return 1 if np.sqrt((weight * falling).sum()) < 1e-5 * np.sqrt(weight.sum()) else 2
 
     def _orders(self) -> int:
         """Terms that make the series exact within EXACT_ENOUGH in motions of WIDE and the height of the sea."""
-        high = 4.0 * math.sqrt(float(np.sum(self._weights())))
+        high = 4.0 * math.sqrt(float(np.sum(self.waves.variances)))
         return next((n for n in range(3, MOST_ORDERS) if self._missed(WIDE + high, n) < EXACT_ENOUGH), MOST_ORDERS)
 
     def _missed(self, reach: float, orders: int) -> float:
         """What the terms left out are at a distance from the static position, at most, as a share of σ at the surface (T15)."""
         kr = self.k * reach
         tail = np.exp(orders * np.log(kr) - math.lgamma(orders + 1))
-        weight = np.sum(self._weights(), axis=0) * self.waves.omega**2
+        weight = np.sum(self.waves.variances, axis=0) * self.waves.omega**2
         return float(np.sqrt((weight * tail**2).sum() / weight.sum()))
 
     def missed(self, reach: float) -> float:
@@ -133,7 +137,8 @@ class Water:
         if self.kind != EXACT:
             return np.zeros((0, 4))
         k, full, omega = float(self.k[0]), float(self.full[0]), float(self.waves.omega[0])
-        return np.array([[k, full, omega * a.real, omega * a.imag] for a in self.waves.regular])
+        amplitudes = [complex(fixed[0]) for fixed in self.waves.fixed if fixed is not None]
+        return np.array([[k, full, omega * a.real, omega * a.imag] for a in amplitudes])
 
     def headings(self) -> Array:
         """Unit vectors of the wave systems, (systems, 2)."""

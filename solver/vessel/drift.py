@@ -27,8 +27,8 @@ class Drift:
     """T2 of a vessel in earth axes at its static yaw, from data about the CG (V21)-(V24).
 
     kind : `none`; `newman`, half the sum of the diagonal terms; `newman-geometric`, their geometric mean with their
-    sign, zero where the signs differ; `qtf`, the full table. Waves of two directions: half the sum of the terms of
-    each direction. Hermitian: T2(m, n) = T2(n, m)*.
+    sign, zero where the signs differ; `qtf`, the full table. Waves of two directions: the table of those headings where
+    the data hold it, else half the sum of the terms of each direction. Hermitian: T2(m, n) = T2(n, m)*.
     """
 
     data: HydrodynamicData | None
@@ -53,9 +53,11 @@ class Drift:
         if self.kind == "qtf":
             qtf = self.data.qtf
             assert qtf is not None
-            values = qtf.at(omega_m, omega_n, direction_m - self.yaw)
-            if direction_n != direction_m:
-                values = 0.5 * (values + qtf.at(omega_m, omega_n, direction_n - self.yaw))
+            heading_m, heading_n = direction_m - self.yaw, direction_n - self.yaw
+            if direction_n == direction_m or qtf.knows(heading_m, heading_n):
+                values = qtf.at(omega_m, omega_n, heading_m, heading_n)
+            else:
+                values = 0.5 * (qtf.at(omega_m, omega_n, heading_m) + qtf.at(omega_m, omega_n, heading_n))
             return turned_force(values, self.yaw)
         first = self.data.mean_drift_at(omega_m, direction_m - self.yaw)
         second = self.data.mean_drift_at(omega_n, direction_n - self.yaw)
@@ -68,6 +70,9 @@ class Drift:
         """What to say of wave systems that travel in these directions [rad] (V24)."""
         apart = np.angle(np.exp(1j * (np.array(directions) - directions[0]))) if len(directions) else np.zeros(1)
         if self.kind == "none" or np.abs(apart).max() < 1e-6:
+            return ()
+        qtf = self.data.qtf if self.data is not None and self.kind == "qtf" else None
+        if qtf is not None and all(qtf.knows(a - self.yaw, b - self.yaw) for a in directions for b in directions):
             return ()
         return (
             "waves of different directions: their common slow drift is taken as half the sum of each direction's T2, "

@@ -18,13 +18,13 @@ DEPTH_TOLERANCE = 0.05
 
 
 def about_cg(data: HydrodynamicData, vessel: Vessel) -> HydrodynamicData:
-    """The data about the vessel's centre of gravity, in its own axes (V1, V2).
+    """The data about the vessel's centre of gravity, in its own axes, A and B symmetric (V1, V2).
 
     When the file does not say its reference point, vessel.hydrodynamics.reference_point stands in.
     """
     if not data.reference_known and vessel.hydrodynamics is not None:
         data = replace(data, reference_point=np.array(vessel.hydrodynamics.reference_point), reference_known=True)
-    return data.moved_to(np.array(vessel.centre_of_gravity))
+    return data.symmetric().moved_to(np.array(vessel.centre_of_gravity))
 
 
 def mass_matrix(vessel: Vessel) -> Array:

@@ -55,7 +55,7 @@ class DataSetRepository(Scoped):
         return self.session.scalars(query).one_or_none() is not None
 
     def names(self) -> Sequence[str]:
-        query = select(DataSet.name).where(DataSet.project_id == self.scope.project_id).distinct()
+        query = select(DataSet.name).where(self._mine(DataSet)).distinct()
         return self.session.scalars(query.order_by(DataSet.name).limit(20)).all()
 
     def payload(self, key: str) -> bytes:

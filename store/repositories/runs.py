@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,9 +10,15 @@ from sqlalchemy import case, delete, func, select, update
 
 from solver.results.part import Chunk
 
+from ..broker import RUNS
 from ..clock import clock, utc_now
+from ..effective import identity
 from ..errors import ConflictError, NotFoundError
-from ..models import ACTIVE, CANCELLED, CANCELLING, FINAL, QUEUED, RUNNING, CaseVersion, Run, Task
+from ..estimate import Amount, Snapshot, snapshot
+from ..filters import RunFilter
+from ..models import ACTIVE, CANCELLED, CANCELLING, FINAL, QUEUED, RUNNING, SUCCEEDED, CaseVersion, DataSet, Run, Task
+from ..people import User
+from ..priority import NORMAL, by_size, doors
 from .scoped import Scoped
 
 
@@ -24,6 +30,20 @@ class RunView:
     progress: float
     message: str
     attempt: int
+    priority: int = NORMAL
+    seconds_left: float | None = None
+    """An estimate (store/estimate.py)."""
+    created_by: str | None = None
+    """Name of the user who started it."""
+
+
+@dataclass(frozen=True)
+class Labels:
+    """What the one who starts a run may say of it; `priority` None: by size."""
+
+    name: str = ""
+    tags: tuple[str, ...] = ()
+    priority: int | None = None
 
 
 class RunRepository(Scoped):
@@ -31,32 +51,72 @@ class RunRepository(Scoped):
         self,
         version: CaseVersion,
         analyses: Sequence[str],
-        chunks: Iterable[Chunk],
-        data_set_id: str | None = None,
+        chunks: Sequence[Chunk],
+        data_set: DataSet | None = None,
         warnings: Sequence[str] = (),
-    ) -> tuple[Run, list[str]]:
-        """A queued run and the ids of its tasks, which the caller rings for after the commit."""
+        labels: Labels | None = None,
+    ) -> tuple[Run, list[tuple[str, str]]]:
+        """A queued run, and where to ring for its tasks after the commit: (id, door) of each."""
+        labels = labels or Labels()
+        data_hash = None if data_set is None else data_set.content_hash
         run = Run(
             project_id=self.scope.project_id,
             case_version_id=version.id,
-            data_set_id=data_set_id,
+            data_set_id=None if data_set is None else data_set.id,
             case_name=version.name,
             content_hash=version.content_hash,
+            data_hash=data_hash,
+            identity=identity(version.content_hash, data_hash, analyses),
             analyses=list(analyses),
             warnings=list(warnings),
+            name=labels.name,
+            tags=list(labels.tags),
+            created_by=self.scope.user_id,
         )
+        return self._queue(run, chunks, labels.priority)
+
+    def again(self, key: str, chunks: Sequence[Chunk]) -> tuple[Run, list[tuple[str, str]]]:
+        """Another run of the very same: case version, overrides, data version and analyses."""
+        old = self.get(key)
+        kept = (
+            "project_id", "case_version_id", "data_set_id", "case_name", "content_hash", "data_hash", "overrides",
+            "analyses", "name", "tags",
+        )  # fmt: skip
+        run = Run(**{name: getattr(old, name) for name in kept}, rerun_of=old.id, created_by=self.scope.user_id)
+        run.identity = identity(old.content_hash, old.data_hash, old.analyses)
+        return self._queue(run, chunks, None)
+
+    def _queue(
+        self, run: Run, chunks: Sequence[Chunk], priority: int | None, queue: str = RUNS
+    ) -> tuple[Run, list[tuple[str, str]]]:
+        if not chunks:
+            raise ValueError("a run needs at least one chunk")
+        priority = by_size(chunk.weight for chunk in chunks) if priority is None else priority
         self.session.add(run)
         self.session.flush()
         now = self.session.scalar(select(clock(self.session)))
         tasks = [
-            Task(run_id=run.id, number=number, chunk=chunk.as_dict(), weight=chunk.weight, rung_at=now)
+            Task(
+                run_id=run.id,
+                number=number,
+                chunk=chunk.as_dict(),
+                weight=chunk.weight,
+                queue=queue,
+                priority=priority,
+                rung_at=now,
+            )
             for number, chunk in enumerate(chunks)
         ]
-        if not tasks:
-            raise ValueError("a run needs at least one chunk")
         self.session.add_all(tasks)
         self.session.flush()
-        return run, [task.id for task in tasks]
+        return run, [(task.id, door) for task in tasks for door in doors(queue, priority)]
+
+    def identical(self, same: str | None) -> Run | None:
+        """The newest succeeded run with this identity."""
+        if same is None:
+            return None
+        query = self._select(Run).where(Run.identity == same, Run.state == SUCCEEDED)
+        return self.session.scalars(query.order_by(Run.id.desc()).limit(1)).one_or_none()
 
     def get(self, key: str) -> Run:
         return self._one(Run, key, "run")
@@ -64,16 +124,24 @@ class RunRepository(Scoped):
     def view(self, key: str) -> RunView:
         return self._with_tasks([self.get(key)])[0]
 
-    def page(self, limit: int, cursor: str | None, state: str | None) -> tuple[list[RunView], int]:
-        """Newest first, from below the id `cursor`; and how many there are in all."""
-        query = self._select(Run)
-        if state:
-            query = query.where(Run.state == state)
+    def page(self, limit: int, cursor: str | None, which: RunFilter | None = None) -> tuple[list[RunView], int]:
+        """Newest first, from below the id `cursor` (or oldest first, from above); and how many there are in all."""
+        which = which or RunFilter()
+        query = self._select(Run).where(*which.conditions())
         total = self.session.scalar(select(func.count()).select_from(query.subquery())) or 0
         if cursor:
-            query = query.where(Run.id < cursor)
-        rows = self.session.scalars(query.order_by(Run.id.desc()).limit(limit)).all()
-        return self._with_tasks(rows), total
+            query = query.where(Run.id > cursor if which.oldest_first else Run.id < cursor)
+        query = query.order_by(Run.id if which.oldest_first else Run.id.desc())
+        return self._with_tasks(self.session.scalars(query.limit(limit)).all()), total
+
+    def label(self, key: str, name: str | None, tags: Sequence[str] | None, pinned: bool | None) -> None:
+        """Change what is given."""
+        run = self._locked(key)
+        given = {"name": name, "tags": None if tags is None else list(tags), "pinned": pinned}
+        for field, value in given.items():
+            if value is not None:
+                setattr(run, field, value)
+        self.session.flush()
 
     def active(self, limit: int) -> list[RunView]:
         query = self._select(Run).where(Run.state.in_(ACTIVE)).order_by(Run.id.desc()).limit(limit)
@@ -85,7 +153,7 @@ class RunRepository(Scoped):
     def summary(self, key: str) -> str:
         """The summary as JSON text; ConflictError while there is none."""
         found = self.session.execute(
-            select(Run.state, Run.reason, Run.summary).where(Run.id == key, Run.project_id == self.scope.project_id)
+            select(Run.state, Run.reason, Run.summary).where(Run.id == key, self._mine(Run))
         ).one_or_none()
         if found is None:
             raise NotFoundError("run", key)
@@ -115,7 +183,7 @@ class RunRepository(Scoped):
         run = self._locked(key)
         if run.state not in FINAL:
             raise ConflictError(f"The run is {run.state}; cancel it first.")
-        self.session.execute(delete(Run).where(Run.id == key))  # the database cascades
+        self.session.execute(delete(Run).where(Run.id == key, self._mine(Run)))  # the database cascades
 
     def _locked(self, key: str) -> Run:
         query = self._select(Run).where(Run.id == key).with_for_update()
@@ -125,26 +193,47 @@ class RunRepository(Scoped):
         return run
 
     def _with_tasks(self, runs: Sequence[Run]) -> list[RunView]:
-        sums = {row.run_id: row for row in self.session.execute(_totals([run.id for run in runs]))} if runs else {}
-        return [_view(run, sums.get(run.id)) for run in runs]
+        if not runs:
+            return []
+        sums = {row.run_id: row for row in self.session.execute(_totals(clock(self.session), [run.id for run in runs]))}
+        active = any(run.state in ACTIVE for run in runs)
+        queue = snapshot(self.session) if active else Snapshot()
+        people = {run.created_by for run in runs} - {None}
+        rows = self.session.execute(select(User.id, User.name).where(User.id.in_(people))) if people else ()
+        names = {row.id: row.name for row in rows}
+        return [_view(run, sums.get(run.id), queue, names) for run in runs]
 
 
-def _totals(keys: Sequence[str]) -> Any:
-    at_work = case((Task.state == RUNNING, Task.message))
+def _totals(now: Any, keys: Sequence[str]) -> Any:
+    working, waiting = Task.state == RUNNING, Task.state == QUEUED
+    spent = case((working, now - Task.claimed_at), else_=func.coalesce(Task.seconds, 0.0))
     return (
         select(
             Task.run_id,
-            (func.sum(Task.weight * Task.progress) / func.sum(Task.weight)).label("progress"),
-            func.max(at_work).label("message"),
+            func.sum(Task.weight).label("total"),
+            func.sum(Task.weight * Task.progress).label("done"),
+            func.max(case((working, Task.message))).label("message"),
             func.max(Task.attempt).label("attempt"),
+            func.min(Task.priority).label("priority"),
+            func.sum(case((working, 1), else_=0)).label("at_work"),
+            func.count().label("tasks"),
+            func.sum(spent).label("seconds"),
+            func.min(case((waiting, Task.id))).label("first"),
         )
         .where(Task.run_id.in_(keys))
         .group_by(Task.run_id)
     )
 
 
-def _view(run: Run, sums: Any) -> RunView:
+def _view(run: Run, sums: Any, queue: Snapshot, names: dict[str, str]) -> RunView:
+    who = names.get(run.created_by or "")
     if sums is None:
-        return RunView(run, 0.0, "", 0)
-    progress = 1.0 if run.state == "succeeded" else min(1.0, float(sums.progress or 0.0))
-    return RunView(run, progress, sums.message or "", sums.attempt)
+        return RunView(run, 0.0, "", 0, created_by=who)
+    done = float(sums.done or 0.0)
+    progress = 1.0 if run.state == SUCCEEDED else min(1.0, done / sums.total if sums.total else 0.0)
+    left = None
+    if run.state in ACTIVE:
+        first = None if sums.first is None else (sums.priority, sums.first)
+        amount = Amount(sums.total, done, sums.at_work, sums.tasks, float(sums.seconds or 0.0), first)
+        left = queue.left(amount, run.study_id)
+    return RunView(run, progress, sums.message or "", sums.attempt, sums.priority, left, who)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Any, TypeVar
 
-from sqlalchemy import Select, select
+from sqlalchemy import ColumnElement, Select, false, select
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from ..errors import ConflictError, NotFoundError
+from ..models import CaseVersion, Run
 from ..scope import Scope
 
 Row = TypeVar("Row")
@@ -20,9 +21,20 @@ class Scoped:
     def __init__(self, session: Session, scope: Scope):
         self.session, self.scope = session, scope
 
+    def _mine(self, model: type[Any]) -> ColumnElement[bool]:
+        """The condition that every query of rows with a project_id holds."""
+        mine: ColumnElement[bool] = model.project_id == self.scope.project_id
+        runs = self.scope.run_ids
+        if runs is None:
+            return mine
+        if model is Run:
+            return mine & Run.id.in_(runs)
+        if model is CaseVersion:
+            return mine & CaseVersion.id.in_(select(Run.case_version_id).where(self._mine(Run)))
+        return false()
+
     def _select(self, model: type[Row]) -> Select[Row]:
-        mine: Any = model
-        return select(model).where(mine.project_id == self.scope.project_id)
+        return select(model).where(self._mine(model))
 
     def _one(self, model: type[Row], key: str, what: str) -> Row:
         mine: Any = model

@@ -20,6 +20,8 @@ from ..errors import LostLeaseError
 from ..models import CANCELLED, CANCELLING, FAILED, QUEUED, RUNNING, SUCCEEDED, CaseVersion, DataSet, Run, Task
 from ..sources import PinnedSource
 
+NEXT_TRIES = 5
+
 
 @dataclass(frozen=True)
 class Ticket:
@@ -28,6 +30,7 @@ class Ticket:
     task_id: str
     run_id: str
     attempt: int
+    weight: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -36,6 +39,7 @@ class Job:
 
     canonical: str
     analyses: tuple[str, ...]
+    overrides: dict[str, Any] | None
     data: PinnedSource
     chunk: Chunk
     checkpoint: bytes | None
@@ -53,7 +57,7 @@ class Outcome:
     outcomes: dict[str, str]
     summary: str
     warnings: tuple[str, ...]
-    solver_version: str
+    solver_version: str | None
 
 
 class TaskRepository:
@@ -65,11 +69,42 @@ class TaskRepository:
     def claim(self, task_id: str, worker: str, lease: float, max_attempts: int) -> Ticket | None:
         """The task, if it is queued or its worker has been silent beyond its lease; None if it is not to be had."""
         run = self._lock_run_of(task_id)
-        if run is None or run.state not in (QUEUED, RUNNING):
+        return None if run is None else self._take(run, task_id, worker, lease, max_attempts)
+
+    def claim_next(
+        self, queue: str, worker: str, lease: float, max_attempts: int, up_to: int | None = None
+    ) -> Ticket | None:
+        """The most urgent queued task, the oldest of equals; with `up_to`, none of a larger priority number."""
+        for _ in range(NEXT_TRIES):
+            found = self._most_urgent(queue, up_to, skip_locked=True) or self._most_urgent(queue, up_to)
+            if found is None:
+                return None
+            ticket = self._take(*found, worker, lease, max_attempts)
+            if ticket is not None:
+                return ticket
+        return None
+
+    def _most_urgent(self, queue: str, up_to: int | None, skip_locked: bool = False) -> tuple[Run, str] | None:
+        query = (
+            select(Run, Task.id)
+            .join(Task, Task.run_id == Run.id)
+            .where(Task.queue == queue, Task.state == QUEUED, Run.state.in_((QUEUED, RUNNING)))
+            .order_by(Task.priority, Task.id)
+            .limit(1)
+            .with_for_update(of=Run, skip_locked=skip_locked)
+            .execution_options(populate_existing=True)
+        )
+        if up_to is not None:
+            query = query.where(Task.priority <= up_to)
+        found = self.session.execute(query).one_or_none()
+        return None if found is None else (found[0], found[1])
+
+    def _take(self, run: Run, task_id: str, worker: str, lease: float, max_attempts: int) -> Ticket | None:
+        if run.state not in (QUEUED, RUNNING):
             return None
         now = clock(self.session)
         free = (Task.state == QUEUED) | ((Task.state == RUNNING) & (Task.lease_until < now))
-        attempt = self.session.scalar(
+        taken = self.session.execute(
             update(Task)
             .where(Task.id == task_id, free, Task.attempt - Task.releases < max_attempts)
             .values(
@@ -78,16 +113,17 @@ class TaskRepository:
                 worker=worker[:200],
                 lease_until=now + lease,
                 heartbeat_at=now,
+                claimed_at=now,
                 message="",
             )
-            .returning(Task.attempt)
+            .returning(Task.attempt, Task.weight)
             .execution_options(synchronize_session=False)
-        )
-        if attempt is None:
+        ).one_or_none()
+        if taken is None:
             return None
         if run.state == QUEUED:
             run.state, run.started_at = RUNNING, utc_now()
-        return Ticket(task_id, run.id, attempt)
+        return Ticket(task_id, run.id, taken.attempt, taken.weight)
 
     def job(self, ticket: Ticket) -> Job:
         """What the claimed task needs to be done."""
@@ -100,6 +136,7 @@ class TaskRepository:
         return Job(
             canonical=version.canonical,
             analyses=tuple(run.analyses),
+            overrides=run.overrides,
             data=PinnedSource(data),
             chunk=Chunk.from_dict(task.chunk),
             checkpoint=task.checkpoint,
@@ -125,8 +162,9 @@ class TaskRepository:
         others = select(func.count()).select_from(Task)
         others = others.where(Task.run_id == ticket.run_id, Task.id != ticket.task_id, Task.state != SUCCEEDED)
         last = not self.session.scalar(others)
-        done = {} if last else {"state": SUCCEEDED, "lease_until": None}
-        self._fenced(ticket, {"part": part, "checkpoint": None, "progress": 1.0, "message": ""} | done)
+        done: dict[str, Any] = {} if last else {"state": SUCCEEDED, "lease_until": None}
+        done |= {"part": part, "checkpoint": None, "progress": 1.0, "message": "", "seconds": self._at_work()}
+        self._fenced(ticket, done)
         return last
 
     def parts(self, run_id: str) -> Sequence[bytes]:
@@ -142,7 +180,8 @@ class TaskRepository:
         if run.state == CANCELLING:
             self.give_up(ticket)
             return False
-        self._fenced(ticket, {"state": SUCCEEDED, "lease_until": None, "progress": 1.0, "message": ""})
+        ended = {"state": SUCCEEDED, "lease_until": None, "progress": 1.0, "message": "", "seconds": self._at_work()}
+        self._fenced(ticket, ended)
         self.session.execute(update(Task).where(Task.run_id == run.id).values(part=None, checkpoint=None))
         run.state, run.reason, run.outcomes = outcome.state, outcome.reason, outcome.outcomes
         run.summary, run.solver_version = outcome.summary, outcome.solver_version
@@ -179,6 +218,10 @@ class TaskRepository:
         return None
 
     # -- inside
+
+    def _at_work(self) -> Any:
+        """Seconds since the claim; what was handed in before counts to then."""
+        return func.coalesce(Task.seconds, clock(self.session) - Task.claimed_at)
 
     def _lock_run_of(self, task_id: str) -> Run | None:
         query = select(Run).join(Task, Task.run_id == Run.id).where(Task.id == task_id)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Locator, Page, expect
 
 PATIENT = 60_000  # software WebGL and a shared machine
 
@@ -15,6 +15,32 @@ def choose_example(page: Page, words: str) -> str:
     page.get_by_role("option", name=words, exact=True).click()
     expect(page.locator("#case-text")).not_to_have_value("")
     return page.locator("#case-text").input_value()
+
+
+def field(page: Page, *path: str | int) -> Locator:
+    """The field of the form at a path of the case."""
+    return page.locator(f'[data-field="{".".join(map(str, path))}"] .sd-input').first
+
+
+def part(page: Page, name: str) -> None:
+    """Another part of the form: Sea, Vessel, Line types, Lines, Attachments, Analyses."""
+    page.locator("#case-form").get_by_role("tab", name=re.compile(f"^{name}")).click()
+
+
+def fill(page: Page, value: str, *path: str | int) -> None:
+    """Type into a field and wait until the text has it."""
+    field(page, *path).fill(value)
+    field(page, *path).blur()
+    expect(page.locator("#case-text")).to_have_value(re.compile(re.escape(value)))
+
+
+def empty_case(page: Page) -> None:
+    page.goto("/app/new")
+    page.evaluate("localStorage.clear()")
+    page.goto("/app/new")
+    expect(page.locator("#tab-sea")).to_be_visible(timeout=PATIENT)
+    page.get_by_role("button", name="Empty case").click()
+    expect(page.locator("#case-text")).to_have_value(re.compile("New case"))
 
 
 def write(page: Page, text: str) -> None:

@@ -139,11 +139,11 @@ def test_a_data_set_that_is_none_is_refused_with_words(wide: Watch) -> None:
     with page.expect_file_chooser() as chooser:
         page.locator("#data-set-upload").click()
     chooser.value.set_files({"name": "barge.nc", "mimeType": "application/x-netcdf", "buffer": b"CDF\x01 small"})
-    expect(page.locator("#data-sets")).to_contain_text("barge.nc")
+    expect(page.locator("#import-message")).to_contain_text("barge.nc is ready")
     with page.expect_file_chooser() as chooser:
         page.locator("#data-set-upload").click()
     chooser.value.set_files({"name": "notes.txt", "mimeType": "text/plain", "buffer": b"hello"})
-    expect(page.locator("#data-set-message")).to_contain_text("not NetCDF")
+    expect(page.locator("#import-message")).to_contain_text("not NetCDF")
     wide.faults[:] = [fault for fault in wide.faults if "422" not in fault]  # the browser reports the refusal itself
 
 

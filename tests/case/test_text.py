@@ -169,3 +169,12 @@ def _only_a_case_or_an_error(text: str | bytes) -> None:
         assert all(item.message for item in outcome.errors)
     else:
         assert load_case(outcome.canonical()) == outcome
+
+
+def test_json_with_letters_beyond_16_bits_is_read() -> None:
+    case = load_case('{"slowdrift": 1, "name": "\\ud83d\\ude80 \\\\ud83d", "environment": {"depth": 5}, "lines": {"a": {'
+                     '"segments": [{"type": "t", "length": 9, "elements": 2}], "end_a": {"pinned": [0, 0, -1]}, '
+                     '"end_b": {"pinned": [5, 0, -1]}}}, "line_types": {"t": {"diameter": 1, "mass": 1, "EA": 1}}, '
+                     '"analyses": {"statics": {}}}')  # fmt: skip
+    assert case.name == "\U0001f680 \\ud83d"
+    assert load_case(case.canonical()) == case

@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-LABEL = r"[LSFTMRVW]\d+"
+LABEL = r"[HLSFTMRVW]\d+"
 ONE = rf"{LABEL}(?:-{LABEL})?"
 # (L1), (L1-L2), (F1, F14), (docs/theory.md, S1-S4), (W2)-(W5), (R4, as DNV-OS-E301)
-CITATION = re.compile(rf"\((?:docs/theory(?:-vessel)?\.md, )?({ONE}(?:, {ONE})*)(?:, [^()]*)?\)")
+CITATION = re.compile(rf"\((?:docs/theory(?:-vessel|-hydrodynamics)?\.md, )?({ONE}(?:, {ONE})*)(?:, [^()]*)?\)")
 ACROSS = re.compile(rf"\(({LABEL})\)-\(({LABEL})\)")
 
 
@@ -48,7 +48,8 @@ def defined() -> Counter[str]:
     """Labels the docs define, with how often."""
     lines = re.findall(r"\\tag\{(\w+)\}", (ROOT / "docs/theory.md").read_text(encoding="utf-8"))
     vessel = (ROOT / "docs/theory-vessel.md").read_text(encoding="utf-8")
-    return Counter([*lines, *re.findall(r"^\(([VW]\d+)\)", vessel, flags=re.MULTILINE)])
+    bodies = (ROOT / "docs/theory-hydrodynamics.md").read_text(encoding="utf-8")
+    return Counter([*lines, *re.findall(r"^\(([HVW]\d+)\)", vessel + bodies, flags=re.MULTILINE)])
 
 
 def test_reads_citations() -> None:

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solver.case import parse_case
+from solver.case import DOF, parse_case
 from solver.frequency_domain.linearise import sigmas
 from solver.frequency_domain.solve import FrequencyResult, solve_frequency_domain
+from solver.model.body import rotation
 from solver.model.build import build
 from solver.outcome import CaseError, NotConverged
 from solver.run import run
@@ -210,3 +211,31 @@ def test_finer_strips_change_little(source) -> None:  # type: ignore[no-untyped-
     )
     for a, b in zip(_std(_solve(coarse, source)), _std(_solve(fine, source)), strict=True):
         np.testing.assert_allclose(a, b, rtol=0.01)
+
+
+def test_a_fairlead_moves_as_the_vessel_carries_it(source: Any) -> None:
+    """The nodes' motion RAO at end b is the vessel's RAO moved to the fairlead: u + θ × r, on its own headings too."""
+    data = coupled([sea()])
+    data["vessel"]["heading"], data["analyses"]["statics"] = "30 deg", {}
+    case = parse_case(data)
+    result = run(case, source, threads=1)
+    channels = {channel.name: channel for channel in result.channels}
+    standing = rotation(np.asarray(result.summary["statics"]["vessel"]["position"][3:]))
+
+    def complex_of(stem: str) -> tuple[np.ndarray, np.ndarray]:
+        amplitude, phase = channels[f"{stem}_amplitude"], channels[f"{stem}_phase"]
+        return amplitude.axes[0].values, amplitude.values * np.exp(1j * phase.values)
+
+    turned = np.array(
+        [[np.cos(np.pi / 6), -np.sin(np.pi / 6), 0], [np.sin(np.pi / 6), np.cos(np.pi / 6), 0], [0, 0, 1]]
+    )
+    omega, _ = complex_of("frequency/vessel/surge_rao")
+    s = np.array([complex_of(f"frequency/vessel/{dof}_rao")[1] for dof in DOF])
+    for name, line in case.lines.items():
+        at, moved = complex_of(f"frequency/line/{name}/motion_rao")
+        picks = np.searchsorted(omega, at - 1e-9)
+        u, angle = s[:3, picks].T, s[3:, picks].T
+        arm = standing @ np.asarray(line.end_b.fairlead, dtype=float)
+        carried = (u + np.cross(angle, arm)) @ turned.T
+        np.testing.assert_allclose(moved[:, -1], carried, atol=2e-6 * np.abs(carried).max())
+        assert np.abs(moved[:, 0]).max() < 1e-12  # the anchor stands still

@@ -14,6 +14,7 @@ import yaml
 from fastapi import FastAPI, Query, Request, UploadFile
 from fastapi.responses import JSONResponse, Response, StreamingResponse
 
+from solver.case.case import Case
 from tests.frontend import fake_results as results
 from tests.frontend import fake_time
 
@@ -94,7 +95,7 @@ class FakeService:
             "analyses": analyses or list(case["case"]["analyses"]), "state": "queued", "outcomes": {}, "reason": None,
             "progress": 0.0, "message": "waiting for a worker", "created_at": now(), "started_at": None,
             "finished_at": None, "attempt": 0, "solver_version": None, "warnings": [], "born": time.monotonic(),
-            "fail": fail,
+            "fail": fail, "name": "", "tags": [], "pinned": False, "eta_seconds": 2.0, "created_by": "Ada", "kind": "case",
         }  # fmt: skip
         return self.runs[run_id]
 
@@ -141,6 +142,30 @@ def _cases(app: FastAPI, fake: FakeService) -> None:
         paths = sorted(EXAMPLES.glob("*.yaml"))
         return [{"name": p.stem, "title": p.stem, "description": "An example.", "yaml": p.read_text()} for p in paths]
 
+    @app.get("/api/v1/schema")
+    def schema() -> Any:
+        return Case.model_json_schema()
+
+    @app.get("/api/v1/cases")
+    def saved(limit: int = 50) -> Any:
+        keys = ("id", "name", "version", "content_hash", "created_at", "warnings")
+        found = [{key: case[key] for key in keys} for case in reversed(fake.cases.values())]
+        return {"items": found[:limit], "next_cursor": None}
+
+    @app.post("/api/v1/preview")
+    async def preview(request: Request) -> Any:
+        case, _ = check((await request.body()).decode())
+        lines = {
+            name: {"arc_length": [0, 100, 200], "position": [[300, 40 * i, -100], [150, 20 * i, -90], [10, i, -5]]}
+            for i, name in enumerate(case.get("lines") or {})
+        }
+        ends = {"end_a": {"tension": 5e5}, "end_b": {"tension": 9e5}, "grounded_length": 60.0}
+        return {"statics": {"converged": True, "lines": dict.fromkeys(lines, ends)}, "lines": lines, "warnings": []}
+
+    @app.get("/healthz")
+    def healthz() -> Any:
+        return {"ok": True}
+
     @app.post("/api/v1/cases/check")
     async def check_case(request: Request) -> Any:
         case, errors = check((await request.body()).decode())
@@ -161,9 +186,19 @@ def _cases(app: FastAPI, fake: FakeService) -> None:
 
 def _runs(app: FastAPI, fake: FakeService) -> None:
     @app.get("/api/v1/runs")
-    def runs(limit: int = 50, cursor: str | None = None, state: str | None = None) -> Any:
-        made = [fake.advance(run) for run in reversed(fake.runs.values())]
-        made = [run for run in made if state is None or run["state"] == state]
+    def runs(
+        limit: int = 50,
+        cursor: str | None = None,
+        state: str | None = None,
+        q: str = "",
+        tag: str = "",
+        sort: str = "-created",
+    ) -> Any:
+        made = [fake.advance(run) for run in fake.runs.values()]
+        made = made if sort == "created" else made[::-1]
+        made = [run for run in made if state is None or run["state"] in state.split(",")]
+        made = [run for run in made if q.lower() in f"{run['name']} {run['case_name']}".lower()]
+        made = [run for run in made if not tag or tag in run["tags"]]
         start = int(cursor or 0)
         more = str(start + limit) if start + limit < len(made) else None
         return {"items": made[start : start + limit], "next_cursor": more, "total": len(made)}
@@ -179,6 +214,21 @@ def _runs(app: FastAPI, fake: FakeService) -> None:
     @app.get("/api/v1/runs/{run_id}")
     def run(run_id: str) -> Any:
         return fake.advance(fake.runs[run_id]) if run_id in fake.runs else problem(404, "No such run")
+
+    @app.patch("/api/v1/runs/{run_id}")
+    async def change(run_id: str, request: Request) -> Any:
+        fake.runs[run_id].update(await request.json())
+        return fake.advance(fake.runs[run_id])
+
+    @app.post("/api/v1/runs/{run_id}/rerun", status_code=202)
+    def rerun(run_id: str) -> Any:
+        return fake.advance(
+            fake.add_run(fake.cases[fake.runs[run_id]["case_id"]], analyses=fake.runs[run_id]["analyses"])
+        )
+
+    @app.get("/api/v1/runs/{run_id}/case")
+    def case_of(run_id: str) -> Any:
+        return fake.cases[fake.runs[run_id]["case_id"]]
 
     @app.post("/api/v1/runs/{run_id}/cancel", status_code=202)
     def cancel(run_id: str) -> Any:

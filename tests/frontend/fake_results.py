@@ -73,6 +73,21 @@ def _line_channels(line: str, azimuth: float, scale: float) -> list[dict[str, An
         channel(f"{frequency}/tension_std_lf", lf, middle, "N"),
         channel(f"{frequency}/tension_std", np.hypot(wf, lf), middle, "N"),
         channel(f"{frequency}/bending_moment_std", 250.0 * np.sin(np.pi * s), nodes, "N m"),
+        *_shapes(line, s, axes),
+    ]
+
+
+def _shapes(line: str, s: np.ndarray, axes: dict[str, tuple[str, Any]]) -> list[dict[str, Any]]:
+    """Motion of all nodes: growing towards the vessel, in a mode and in waves."""
+    lean = s[:, None] * np.array([1.0, 0.5, 0.1])
+    modes = {"mode": ("", np.arange(1.0, len(FPSO_MODES) + 1))} | axes
+    waves = {"omega": ("rad/s", WF[::20])} | axes
+    shape = np.stack([lean * (-1) ** k for k in range(len(FPSO_MODES))])
+    rao = f"frequency/line/{line}/motion_rao"
+    return [
+        channel(f"modes/line/{line}/shape", shape, modes, "1"),
+        channel(f"{rao}_amplitude", np.stack([lean / (1 + w) for w in WF[::20]]), waves, "m/m"),
+        channel(f"{rao}_phase", np.stack([0 * lean - w for w in WF[::20]]), waves, "rad"),
     ]
 
 

@@ -56,6 +56,7 @@ def fpso_with_time(summary: dict[str, Any]) -> dict[str, Any]:
         "arc_length": MIDDLE.tolist(), "tension_min": (mean - 4e5).tolist(), "tension_max": (mean + 5e5).tolist(),
         "tension_mean": mean.tolist(), "end_b_tension": {"min": 4.08e6, "max": 4.52e6},
         "end_b_max_per_seed": [4.5e6, 4.52e6],
+        "tension_std": {"wf": [1.0e5] * len(MIDDLE), "lf": [0.5e5] * len(MIDDLE)},
     }  # fmt: skip
     bands = {"wf": WF_SIGMA, "lf": LF_SIGMA}
     frequency = summary["frequency_domain"] | {"same_waves": {"vessel_std": _times(bands, 0.99)}}

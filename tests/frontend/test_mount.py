@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import re
 
+import flask
 import pytest
 from a2wsgi import WSGIMiddleware
 from fastapi.testclient import TestClient
 
+from frontend import caching
 from frontend.app import create_app
 from frontend.security import content_security_policy
 from tests.frontend.fake_api import create_fake
@@ -55,3 +57,31 @@ def test_policy_by_directive() -> None:
 
 def test_rest_stays_rest(mounted: TestClient) -> None:
     assert mounted.get("/api/v1/runs").json()["items"] == []
+
+
+def test_files_that_name_their_version_are_kept_for_good_and_compressed_once(mounted: TestClient) -> None:
+    page = mounted.get("/app/new").text
+    found = [part for part in re.findall(r'src="([^"]+)"', page) if "assets/" in part or "dash_mantine" in part]
+    assert len(found) > 5
+    plotly = "/app/_dash-component-suites/plotly/package_data/plotly.min.js?v=1"
+    for path in (found[0], found[-1], *(part for part in found if "dash_mantine" in part), plotly):
+        answers = [mounted.get(path) for _ in range(2)]
+        assert answers[0].headers["Cache-Control"] == "public, max-age=31536000, immutable", path
+        assert answers[0].headers["Content-Encoding"] in ("zstd", "br", "gzip"), path
+        assert answers[0].content == answers[1].content
+    assert "immutable" not in mounted.get("/app/new").headers.get("Cache-Control", "")
+
+
+def test_answers_of_callbacks_are_never_kept() -> None:
+    held = caching.Compressed()
+    with flask.Flask("x").test_request_context("/_dash-update-component", method="POST"):
+        key = f"br;{caching.compressed_key(flask.request)}"
+    held.set(key, b"somebody's")
+    assert held.get(key) is None
+
+
+def test_the_scheme_is_set_before_anything_is_drawn(mounted: TestClient) -> None:
+    page = mounted.get("/app/").text
+    head = page.split("</head>")[0]
+    assert "assets/first.js" in head
+    assert '<html lang="en">' in page

@@ -41,7 +41,7 @@ def merge(case: Case, parts: Sequence[Part]) -> Result:
         Axis("omega", "rad/s", np.linspace(0.01, 1.2, 50)),
         Axis("arc_length", "m", np.array([0.0, 60.0, 120.0])),
     )
-    values = np.arange(50, dtype=float)
+    values = np.arange(50, dtype=float) * stiffness(case) / 1e8
     axis = Axis("axis", "", np.arange(3.0))
     channels = (
         Channel("frequency/vessel/surge", values, (omega,), "m2 s/rad", "a response spectrum"),
@@ -54,6 +54,7 @@ def merge(case: Case, parts: Sequence[Part]) -> Result:
         "numbers": [p.summary["number"] for p in parts],
     }
     summary |= {"resumed_from": max(p.summary["resumed_from"] for p in parts)}
+    summary["answer"] = stiffness(case) / 3
     failures = _orders(case).get("failures", {})
     summary |= {name: {"converged": True} for name in case.analyses.requested() if name not in failures}
     if failures:
@@ -63,6 +64,11 @@ def merge(case: Case, parts: Sequence[Part]) -> Result:
 
 def run(case: Case, data: Any, on_progress: OnProgress | None = None) -> Result:
     return merge(case, [run_chunk(case, data, Chunk("statics"), None, on_progress)])
+
+
+def stiffness(case: Case) -> float:
+    """What the answers are made of, so that a run's numbers can be told from another's."""
+    return float(next(iter(case.line_types.values())).EA)
 
 
 def _orders(case: Case) -> dict[str, Any]:
@@ -85,6 +91,8 @@ def _misbehave(orders: dict[str, Any], chunk: Chunk) -> None:
             raise ZeroDivisionError("a secret of the source")
         case "memory":
             raise MemoryError
+        case "hog":
+            _eat(float(orders.get("megabytes", 4000)))
         case "die":
             os.kill(os.getpid(), 9)
         case "once":
@@ -94,3 +102,11 @@ def _misbehave(orders: dict[str, Any], chunk: Chunk) -> None:
                 os.kill(os.getpid(), 9)
         case "nan":
             os.environ["X"] = "1"
+
+
+def _eat(megabytes: float) -> None:
+    """Takes memory and touches it, without a progress call, as a computation gone wrong would."""
+    held = []
+    while len(held) * 20 < megabytes:
+        held.append(np.ones(20 * 2**17))
+        time.sleep(0.01)

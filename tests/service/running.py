@@ -26,7 +26,7 @@ def command(*arguments: str) -> list[str]:
 
 
 def environment(settings: Settings) -> dict[str, str]:
-    return os.environ | settings.as_env() | {"PYTHONPATH": str(ROOT)}
+    return os.environ | settings.as_env() | {"PYTHONPATH": os.environ.get("SD_TEST_PATH", str(ROOT))}
 
 
 def start(settings: Settings, *arguments: str) -> subprocess.Popen[str]:

@@ -77,3 +77,17 @@ def test_demo_ends_and_leaves_nothing(make_place: Callable[..., Place], tmp_path
     for word in ("surge", "damping", "largest σ of tension", "/app/runs/"):
         assert word in done.stdout
     assert not processes_of(settings)
+
+
+def test_the_python_client_of_the_docs(client: httpx.Client) -> None:
+    pytest.importorskip("xarray")
+    text = (ROOT / "docs" / "client.md").read_text()
+    code = text.split("<!-- client-example -->\n```python\n", 1)[1].split("```", 1)[0]
+    code = code.replace("http://127.0.0.1:8000", str(client.base_url).rstrip("/"))
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=300, check=False, cwd=ROOT
+    )
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    assert lines[-2].startswith("surge: ")
+    assert lines[-1].startswith("spectrum over ")

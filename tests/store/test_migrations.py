@@ -7,9 +7,13 @@ from alembic import command
 from alembic.script import ScriptDirectory
 from sqlalchemy import inspect, select, text
 
+from solver.results.part import Chunk
 from store import migrations
 from store.database import Database
 from store.models import DEFAULT_PROJECT, DEFAULT_TEAM, Project
+from store.repositories import CaseRepository, RunRepository
+from store.repositories.cases import NewCase
+from store.scope import Scope
 
 
 def test_up_down_up(empty: Database) -> None:
@@ -44,3 +48,24 @@ def test_sqlite_is_set_up_for_several_processes(database: Database) -> None:
         assert session.scalar(text("PRAGMA journal_mode")) == "wal"
         assert session.scalar(text("PRAGMA foreign_keys")) == 1
         assert session.scalar(text("PRAGMA busy_timeout")) == 30_000
+
+
+def test_rows_survive_every_step_down_and_up(database: Database) -> None:
+    """SQLite alters a table by copy: what refers to it must not be deleted with the old one."""
+    with database.write() as session:
+        version, _ = CaseRepository(session, Scope()).save(NewCase("kept", "h" * 64, "{}", "x: 1"))
+        run, _ = RunRepository(session, Scope()).create(version, ["statics"], [Chunk("frequency")])
+    revisions = [
+        script.revision for script in ScriptDirectory.from_config(migrations._config(database)).walk_revisions()
+    ]
+    for revision in revisions[1:]:
+        migrations.downgrade(database, revision)
+        with database.engine.connect() as connection:
+            for table in ("case_versions", "runs", "tasks"):
+                assert connection.scalar(text(f"SELECT count(*) FROM {table}")) == 1, (revision, table)
+    migrations.upgrade(database)
+    with database.read() as session:
+        view = RunRepository(session, Scope()).view(run.id)
+        assert (view.run.case_name, view.attempt, view.run.tags, view.run.pinned) == ("kept", 0, [], False)
+        if database.engine.dialect.name == "sqlite":
+            assert session.scalar(text("PRAGMA foreign_keys")) == 1

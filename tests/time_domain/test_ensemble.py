@@ -11,6 +11,7 @@ import pytest
 
 from solver.outcome import Cancelled, CaseError
 from solver.time_domain import block as blocks
+from solver.time_domain import pace
 from solver.time_domain.ensemble import Record, march_ensemble
 from tests.systems import Source, moored_box, span
 from tests.time_domain.systems import block_of, marched, prepared, timed
@@ -92,7 +93,7 @@ def test_a_resumed_run_is_the_run(
     make: Callable[..., dict[str, Any]], step: float, source: Source, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Also where a stride of 7 s is no whole number of renewals of Newton's matrix."""
-    monkeypatch.setattr(blocks, "BLOCK_SECONDS", 7.0)
+    monkeypatch.setattr(pace, "BLOCK_SECONDS", 7.0)
     monkeypatch.setattr(blocks, "LANES_WANTED", 3)
     model, static, spec = prepared(make(step=step, build_up=20.0, duration=40.0, output_step=0.2), source)
     seeds = [1, 2]
@@ -121,7 +122,7 @@ def test_a_checkpoint_taken_while_the_block_marches_on_is_that_of_the_last_strid
 
 
 def test_what_progress_raises_stops_all_threads(source: Source, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(blocks, "BLOCK_SECONDS", 2.0)
+    monkeypatch.setattr(pace, "BLOCK_SECONDS", 2.0)
     model, static, spec = prepared(_box(), source)
 
     def stop(_share: float, _save: Callable[[], bytes]) -> None:

@@ -12,6 +12,7 @@ import pytest
 from solver.outcome import DataError
 from solver.vessel.data import MAX_BYTES, QTF, FileSource, read_bytes
 from solver.vessel.data.hydrodynamics import transport
+from solver.vessel.quality import quality_warnings
 
 from . import synthetic
 
@@ -166,7 +167,7 @@ def test_warnings_name_threshold_and_remedy(source, folder):
     bad = source.copy(deep=True)
     bad.radiation_damping.values[3, 2, 2] *= -1
     bad.added_mass.values[5, 0, 4] += 0.1 * np.sqrt(bad.added_mass.values[5, 0, 0] * bad.added_mass.values[5, 4, 4])
-    warnings = read_bytes(synthetic.to_bytes(bad, folder), "w.nc").warnings
+    warnings = quality_warnings(read_bytes(synthetic.to_bytes(bad, folder), "w.nc"), 0.0, np.inf)
     assert any("surge and pitch" in text and "threshold 2 %" in text for text in warnings)
     assert any("heave is negative at 0.3 rad/s" in text and "lid" in text for text in warnings)
 

@@ -2,6 +2,16 @@
 
 from .hydrodynamics import HydrodynamicData
 from .qtf import QTF
-from .source import MAX_BYTES, DataSource, FileSource, read_bytes
+from .source import MAX_BYTES, DataSource, FileSource, open_for, read_bytes, read_files, unpacked
 
-__all__ = ["MAX_BYTES", "QTF", "DataSource", "FileSource", "HydrodynamicData", "read_bytes"]
+__all__ = [
+    "MAX_BYTES",
+    "QTF",
+    "DataSource",
+    "FileSource",
+    "HydrodynamicData",
+    "open_for",
+    "read_bytes",
+    "read_files",
+    "unpacked",
+]

@@ -6,24 +6,25 @@ The file is in the time factor e^{-i omega t}; excitation is conjugated here, on
 from __future__ import annotations
 
 import hashlib
+import json
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from ...case.quantities import DOF
 from ...outcome import DataError
 from .hydrodynamics import HydrodynamicData
 from .interpolate import TURN
+from .layout import EXTRA, PROVENANCE, read_drift, read_qtf
 from .netcdf import Dataset, dof_order, numbers, open_netcdf, require, scalar, take, vector3
 
 Array = np.ndarray
-ASYMMETRY = 0.02  # of √(ii·jj): above it a radiation matrix that is not symmetric is worth a warning
-NEGATIVE = 0.01  # of its peak: below minus this, damping on the diagonal is worth a warning
 MAX_OMEGA, MAX_HEADINGS = 5000, 721
+MAX_TOLD = 1_000_000  # characters of provenance
 VARIABLES = (  # all that is read of a file
     "omega", "wave_direction", "radiating_dof", "influenced_dof", "complex", "added_mass", "radiation_damping",
-    "Froude_Krylov_force", "diffraction_force", "excitation_force", "mean_drift_force", "hydrostatic_stiffness",
+    "Froude_Krylov_force", "diffraction_force", "excitation_force", "hydrostatic_stiffness", *EXTRA, PROVENANCE,
     "rotation_center", "center_of_mass", "center_of_buoyancy", "disp_volume", "disp_mass", "rho", "g", "water_depth",
     "forward_speed",
 )  # fmt: skip
@@ -59,11 +60,11 @@ def read_capytaine(payload: bytes, name: str) -> HydrodynamicData:
     if speed:
         raise DataError(f"{name}: forward_speed is {speed:g} m/s; compute the data at zero speed")
     warnings: list[str] = []
-    added_mass, zero, infinite = _radiation(dataset, "added_mass", layout, warnings)
-    damping, _, _ = _radiation(dataset, "radiation_damping", layout, warnings)
-    _check_damping(damping, layout, warnings)
+    added_mass, zero, infinite = _radiation(dataset, "added_mass", layout)
+    damping, _, _ = _radiation(dataset, "radiation_damping", layout)
     excitation, excitation_zero = _excitation(dataset, layout)
     density, gravity, depth = _water(dataset, name, warnings)
+    own, content_hash = read_drift(dataset, name), hashlib.sha256(payload).hexdigest()
     rotation_centre = vector3(dataset, "rotation_center", name)
     stiffness = take(dataset, "hydrostatic_stiffness", ("influenced_dof", "radiating_dof"), name)
     if stiffness is not None:
@@ -74,7 +75,7 @@ def read_capytaine(payload: bytes, name: str) -> HydrodynamicData:
         )
     return HydrodynamicData(
         name=name,
-        content_hash=hashlib.sha256(payload).hexdigest(),
+        content_hash=content_hash,
         omega=layout.omega[layout.finite],
         headings=layout.headings,
         added_mass=added_mass,
@@ -83,7 +84,13 @@ def read_capytaine(payload: bytes, name: str) -> HydrodynamicData:
         added_mass_zero=zero,
         added_mass_infinite=infinite,
         excitation_zero=excitation_zero,
-        mean_drift=_mean_drift(dataset, layout),
+        mean_drift=_mean_drift(dataset, layout)
+        if own is None
+        else _finite(own[2][..., layout.influenced], "mean_drift_force", name),
+        mean_drift_omega=None if own is None else own[0],
+        mean_drift_headings=None if own is None else own[1],
+        motions=_motions(dataset, layout),
+        qtf=read_qtf(dataset, layout.influenced, name),
         hydrostatic_stiffness=stiffness,
         displaced_volume=_volume(dataset, name, density),
         centre_of_buoyancy=vector3(dataset, "center_of_buoyancy", name),
@@ -94,7 +101,26 @@ def read_capytaine(payload: bytes, name: str) -> HydrodynamicData:
         gravity=gravity,
         depth=depth,
         warnings=tuple(warnings),
+        provenance=_provenance(dataset, payload, content_hash, name),
     )
+
+
+def _provenance(dataset: Dataset, payload: bytes, content_hash: str, name: str) -> dict[str, Any]:
+    """Of the file, and `source`: what a file that this program wrote says of where its numbers came from."""
+    told = (dataset[PROVENANCE].labels or ("",))[0] if PROVENANCE in dataset else ""
+    try:
+        source = json.loads(told) if told and len(told) < MAX_TOLD else None
+    except (ValueError, RecursionError):
+        source = None
+    files = [{"name": name, "bytes": len(payload), "sha256": content_hash, "used": True}]
+    made = {
+        "format": "NetCDF",
+        "files": files,
+        "not_read": [],
+        "conventions": {"time_factor": "e^{-iωt}"},
+        "assumed": [],
+    }
+    return made | ({"source": source} if isinstance(source, dict) and source else {})
 
 
 def _layout(dataset: Dataset, name: str) -> _Layout:
@@ -135,10 +161,8 @@ def _headings(dataset: Dataset, name: str) -> tuple[Array, Array]:
     return angle[keep], keep
 
 
-def _radiation(
-    dataset: Dataset, variable: str, layout: _Layout, warnings: list[str]
-) -> tuple[Array, Array | None, Array | None]:
-    """Finite frequencies (W, 6, 6), and the matrices at 0 and infinity when they are there; made symmetric."""
+def _radiation(dataset: Dataset, variable: str, layout: _Layout) -> tuple[Array, Array | None, Array | None]:
+    """Finite frequencies (W, 6, 6), and the matrices at 0 and infinity when they are there."""
     name = layout.name
     values = require(
         dataset, variable, (layout.dim, "influenced_dof", "radiating_dof"), name,
@@ -146,38 +170,12 @@ def _radiation(
     )  # fmt: skip
     values = values[:, layout.influenced][:, :, layout.radiating].real
     finite = _finite(values[layout.finite], variable, name)
-    peak = np.sqrt(np.abs(np.diagonal(finite, axis1=1, axis2=2)).max(axis=0))
-    scale = np.maximum(np.outer(peak, peak), 1e-300)
-    gap = (np.abs(finite - finite.transpose(0, 2, 1)) / scale).max(axis=0)
-    if gap.max() > ASYMMETRY:
-        i, j = np.unravel_index(int(gap.argmax()), gap.shape)
-        warnings.append(
-            f"{name}: {variable} of {DOF[i]} and {DOF[j]} differs from its transpose by {100 * gap.max():.1f} % "
-            f"(threshold {100 * ASYMMETRY:.0f} %); the mean is taken; refine the mesh"
-        )
     edges = []
     for edge in (0.0, math.inf):
         index = layout.at(edge)
         there = index is not None and bool(np.all(np.isfinite(values[index])))
-        edges.append(_symmetric(values[index]) if there else None)
-    return _symmetric(finite), edges[0], edges[1]
-
-
-def _symmetric(matrix: Array) -> Array:
-    result: Array = 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
-    return result
-
-
-def _check_damping(damping: Array, layout: _Layout, warnings: list[str]) -> None:
-    diagonal = np.diagonal(damping, axis1=1, axis2=2)
-    share = diagonal.min(axis=0) / np.maximum(diagonal.max(axis=0), 1e-300)
-    for dof in np.flatnonzero(share < -NEGATIVE):
-        omega = layout.omega[layout.finite][diagonal[:, dof].argmin()]
-        warnings.append(
-            f"{layout.name}: radiation_damping of {DOF[dof]} is negative at {omega:.4g} rad/s, "
-            f"{-100 * share[dof]:.1f} % of its peak (threshold {100 * NEGATIVE:.0f} %): an irregular frequency; "
-            f"compute with a lid or a finer mesh"
-        )
+        edges.append(values[index] if there else None)
+    return finite, edges[0], edges[1]
 
 
 def _excitation(dataset: Dataset, layout: _Layout) -> tuple[Array, Array | None]:
@@ -206,6 +204,14 @@ def _mean_drift(dataset: Dataset, layout: _Layout) -> Array | None:
         return None
     values = values[layout.finite][:, layout.turn][:, :, layout.influenced].real
     return _finite(values, "mean_drift_force", layout.name)
+
+
+def _motions(dataset: Dataset, layout: _Layout) -> Array | None:
+    values = take(dataset, "RAO", (layout.dim, "wave_direction", "radiating_dof"), layout.name)
+    if values is None or not np.iscomplexobj(values):
+        return None
+    values = np.conj(values[layout.finite][:, layout.turn][:, :, layout.radiating])
+    return values if np.all(np.isfinite(values)) else None
 
 
 def _water(dataset: Dataset, name: str, warnings: list[str]) -> tuple[float, float, float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -27,11 +27,14 @@ class HydrodynamicData:
     added_mass, damping : (W, 6, 6); added_mass_zero, added_mass_infinite : (6, 6) or None.
     excitation : complex (W, H, 6), Froude-Krylov plus diffraction per unit amplitude [N/m, N m/m].
     excitation_zero : real limit at omega = 0, (H, 6), or None.
-    mean_drift : (W, H, 6) force in a regular wave per amplitude squared [N/m2, N m/m2], or None.
+    mean_drift : (W, H, 6) force in a regular wave per amplitude squared [N/m2, N m/m2], or None; at frequencies and
+    headings of its own, mean_drift_omega and mean_drift_headings, where they are not None.
+    motions : complex (W, H, 6) per unit amplitude as the file says them [m/m, rad/m], or None; no analysis uses them.
     hydrostatic_stiffness : (6, 6) of the body in equilibrium with its weight at `centre_of_mass`, or None.
     displaced_volume [m3], centre_of_buoyancy, centre_of_mass (3,) [m] in body axes, None when the file does not say.
     reference_known : False when the file does not say where its reference point is (then (0, 0, 0) stands here).
-    depth [m] may be inf. content_hash : SHA-256 of the file.
+    Matrices are as the file has them; `about_cg` makes A and B symmetric. depth [m] may be inf. content_hash : SHA-256
+    of the file, or of the manifest of a set. provenance : format, files, conventions, what was assumed; plain JSON.
     """
 
     name: str
@@ -56,6 +59,10 @@ class HydrodynamicData:
     qtf: QTF | None = None
     reference_known: bool = True
     warnings: tuple[str, ...] = ()
+    mean_drift_omega: Array | None = None
+    mean_drift_headings: Array | None = None
+    motions: Array | None = None
+    provenance: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         w, h = self.omega.size, self.headings.size
@@ -63,16 +70,27 @@ class HydrodynamicData:
             raise DataError(f"{self.name}: frequencies must rise from above 0 and be finite; got {w} of them")
         expected = {
             "added_mass": (w, 6, 6), "damping": (w, 6, 6), "excitation": (w, h, 6), "added_mass_zero": (6, 6),
-            "added_mass_infinite": (6, 6), "excitation_zero": (h, 6), "mean_drift": (w, h, 6),
+            "added_mass_infinite": (6, 6), "excitation_zero": (h, 6), "motions": (w, h, 6),
+            "mean_drift": (self.drift_omega.size, self.drift_headings.size, 6),
             "hydrostatic_stiffness": (6, 6), "centre_of_buoyancy": (3,), "centre_of_mass": (3,),
             "reference_point": (3,),
         }  # fmt: skip
-        for field, shape in expected.items():
-            value = getattr(self, field)
+        for attribute, shape in expected.items():
+            value = getattr(self, attribute)
             if value is not None and value.shape != shape:
-                raise DataError(f"{self.name}: {field} has shape {value.shape}; expected {shape}")
+                raise DataError(f"{self.name}: {attribute} has shape {value.shape}; expected {shape}")
             if value is not None and not np.all(np.isfinite(value)):
-                raise DataError(f"{self.name}: {field} holds values that are not finite; compute them again")
+                raise DataError(f"{self.name}: {attribute} holds values that are not finite; compute them again")
+
+    @property
+    def drift_omega(self) -> Array:
+        """Frequencies of the mean drift [rad/s]."""
+        return self.omega if self.mean_drift_omega is None else self.mean_drift_omega
+
+    @property
+    def drift_headings(self) -> Array:
+        """Headings of the mean drift [rad]."""
+        return self.headings if self.mean_drift_headings is None else self.mean_drift_headings
 
     # --- evaluation
 
@@ -137,10 +155,10 @@ class HydrodynamicData:
                 f"Newman's approximation needs; add it to the file, or set vessel.hydrodynamics.drift to none"
             )
         omega = np.asarray(omega, dtype=float)
-        i, j, w = heading_weights(self.headings, heading, self.name)
+        i, j, w = heading_weights(self.drift_headings, heading, self.name)
         table = (1.0 - w) * self.mean_drift[:, i] + w * self.mean_drift[:, j]
-        check_range(omega.ravel(), 0.0, float(self.omega[-1]), self.name, "the mean drift force")
-        nodes = np.concatenate([[0.0], self.omega])
+        check_range(omega.ravel(), 0.0, float(self.drift_omega[-1]), self.name, "the mean drift force")
+        nodes = np.concatenate([[0.0], self.drift_omega])
         result = np.zeros((*omega.shape, 6))
         for dof in np.flatnonzero(np.any(table != 0.0, axis=0)):
             result[..., dof] = np.interp(omega, nodes, np.concatenate([[0.0], table[:, dof]]))
@@ -176,7 +194,21 @@ class HydrodynamicData:
             excitation_zero=None if self.excitation_zero is None else self.excitation_zero @ t,
             mean_drift=drift,
             hydrostatic_stiffness=_congruent(self.hydrostatic_stiffness, t),
-            qtf=None if self.qtf is None else replace(self.qtf, values=self.qtf.values @ t),
+            qtf=None if self.qtf is None else self.qtf.moved(t),
+            motions=None if self.motions is None else self.motions @ np.linalg.inv(t).T,
+        )
+
+    def symmetric(self) -> HydrodynamicData:
+        """The same with added mass and damping made symmetric, as theory has them; itself when they are already."""
+        edges = [edge for edge in (self.added_mass_zero, self.added_mass_infinite) if edge is not None]
+        if all(np.array_equal(item, item.swapaxes(-1, -2)) for item in (self.added_mass, self.damping, *edges)):
+            return self
+        return replace(
+            self,
+            added_mass=_symmetric(self.added_mass),
+            damping=_symmetric(self.damping),
+            added_mass_zero=None if self.added_mass_zero is None else _symmetric(self.added_mass_zero),
+            added_mass_infinite=None if self.added_mass_infinite is None else _symmetric(self.added_mass_infinite),
         )
 
     def describe(self) -> dict[str, Any]:
@@ -191,7 +223,7 @@ class HydrodynamicData:
             "headings_deg": [round(float(value), 6) for value in np.degrees(self.headings)],
             "headings_span_circle": spans_circle(self.headings),
             "mean_drift": self.mean_drift is not None,
-            "qtf": self.qtf is not None,
+            "qtf": None if self.qtf is None else self.qtf.describe(),
             "hydrostatic_stiffness": self.hydrostatic_stiffness is not None,
             "displaced_volume": self.displaced_volume,
             "reference_point": [float(value) for value in self.reference_point] if self.reference_known else None,
@@ -199,6 +231,7 @@ class HydrodynamicData:
             "gravity": self.gravity,
             "depth": depth if np.isfinite(depth) else None,
             "warnings": list(self.warnings),
+            "provenance": self.provenance,
         }
 
 
@@ -208,6 +241,11 @@ def transport(arm: Array) -> Array:
     t = np.eye(6)
     t[:3, 3:] = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]
     return t
+
+
+def _symmetric(matrix: Array) -> Array:
+    result: Array = 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
+    return result
 
 
 def _congruent(matrix: Array | None, t: Array) -> Array | None:

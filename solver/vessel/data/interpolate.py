@@ -10,7 +10,7 @@ from ...outcome import DataError
 
 Array = np.ndarray
 TURN = 2.0 * math.pi
-_ROUND_OFF = 1e-9
+PRINTED = 2e-5  # of a frequency: what files of five printed digits may differ by; nearer than this is inside
 
 
 def spans_circle(headings: Array) -> bool:
@@ -53,12 +53,12 @@ def check_range(omega: Array, low: float, high: float, name: str, what: str) -> 
     if omega.size == 0:
         return
     least, most = float(omega.min()), float(omega.max())
-    if least < low - _ROUND_OFF * max(low, 1.0):
+    if least < low * (1 - PRINTED) - 1e-9:
         raise DataError(
             f"{name}: {what} is asked for at {least:.4g} rad/s, below the lowest frequency of the data, "
             f"{low:.4g} rad/s; compute the data at omega = 0 or at lower frequencies"
         )
-    if most > high * (1 + _ROUND_OFF):
+    if most > high * (1 + PRINTED):
         raise DataError(
             f"{name}: {what} is asked for at {most:.4g} rad/s, above the highest frequency of the data, "
             f"{high:.4g} rad/s; compute higher frequencies or lower analyses.frequency_domain.wave.to"

@@ -43,7 +43,10 @@ Dataset = dict[str, Variable]
 
 
 def open_netcdf(payload: bytes, name: str, wanted: Collection[str]) -> Dataset:
-    """Those of the wanted variables that the file has, in memory (NetCDF 4 or 3). Raises DataError."""
+    """Those of the wanted variables that the file has, in memory (NetCDF 4 or 3). Raises DataError.
+
+    An attribute of the file that is wanted stands there as a variable of one text.
+    """
     try:
         return (_read_netcdf3 if payload[:3] == b"CDF" else _read_netcdf4)(payload, name, wanted)
     except DataError:
@@ -76,7 +79,8 @@ def _read_netcdf4(payload: bytes, name: str, wanted: Collection[str]) -> Dataset
             if not _text(item.attrs.get("NAME", "")).startswith(_BARE):
                 found[variable] = item
         _check_size(sum(_expanded(item) for item in found.values()), name)
-        return {variable: _variable4(item, variable) for variable, item in found.items()}
+        told = _told({key: file.attrs[key] for key in wanted if key in file.attrs})
+        return told | {variable: _variable4(item, variable) for variable, item in found.items()}
 
 
 def _expanded(item: Any) -> int:
@@ -120,10 +124,17 @@ def _read_netcdf3(payload: bytes, name: str, wanted: Collection[str]) -> Dataset
     with netcdf_file(io.BytesIO(payload), "r", mmap=False) as file:
         found = {variable: file.variables[variable] for variable in wanted if variable in file.variables}
         _check_size(sum(item.data.nbytes for item in found.values()), name)
-        return {
+        attributes = vars(file)["_attributes"]
+        return _told({key: attributes[key] for key in wanted if key in attributes}) | {
             variable: _decoded(tuple(item.dimensions), np.asarray(item.data), vars(item)["_attributes"])
             for variable, item in found.items()
         }
+
+
+def _told(attributes: Mapping[str, Any]) -> Dataset:
+    return {
+        key: Variable((), None, (_text(value),)) for key, value in attributes.items() if isinstance(value, str | bytes)
+    }
 
 
 def _decoded(dims: tuple[str, ...], raw: Array, attributes: Mapping[str, Any]) -> Variable:

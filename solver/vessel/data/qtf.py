@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -10,48 +11,170 @@ from ...outcome import DataError
 from .interpolate import check_range, heading_weights
 
 Array = np.ndarray
+HERMITIAN = 1e-3  # of the largest force, or moment
 
 
 @dataclass(frozen=True)
 class QTF:
-    """T2(omega_m, omega_n), Hermitian, unidirectional: F2 = Re ΣΣ A_m A_n* T2(m, n) e^{i (omega_m - omega_n) t}.
+    """T2(omega_m, omega_n), Hermitian: F2 = Re ΣΣ A_m A_n* T2(m, n) e^{i (omega_m - omega_n) t}.
 
-    omega : (N,) rising [rad/s]; headings : (H,) in [0, 2π) [rad]; values : complex (H, N, N, 6) [N/m2, N m/m2].
+    omega : (N,) rising [rad/s]; headings : (H,) in [0, 2π) [rad]; values : complex (H, N, N, 6) [N/m2, N m/m2], NaN
+    for pairs that were not computed. cross : for indices a < b of headings, T2 of the wave m from heading a and n from
+    heading b, complex (N, N, 6); pairs of headings that are not there are unknown.
     """
 
     omega: Array
     headings: Array
     values: Array
     name: str = "QTF"
+    cross: dict[tuple[int, int], Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         n, h = self.omega.size, self.headings.size
-        if self.values.shape != (h, n, n, 6):
-            raise DataError(f"{self.name}: the QTF has shape {self.values.shape}; expected {(h, n, n, 6)}")
-        mirrored = np.conj(self.values.transpose(0, 2, 1, 3))
-        size = np.abs(self.values).max(axis=(0, 1, 2), initial=0.0)
-        if np.any(np.abs(self.values - mirrored).max(axis=(0, 1, 2), initial=0.0) > 1e-3 * size):
+        if self.values.shape != (h, n, n, 6) or n < 2:
+            raise DataError(f"{self.name}: the QTF has shape {self.values.shape}; expected {(h, n, n, 6)}, N >= 2")
+        for table in (*self.values, *self.cross.values()):
+            if table.shape != (n, n, 6):
+                raise DataError(f"{self.name}: a pair of headings has shape {table.shape}; expected {(n, n, 6)}")
+            unknown = np.isnan(table)
+            if np.isinf(table).any() or np.any(unknown.any(axis=2) != unknown.all(axis=2)):
+                raise DataError(
+                    f"{self.name}: the QTF holds values that are not finite; a pair that was not computed is NaN in all modes"
+                )
+        for table in self.values:
+            if np.any(np.isnan(table[..., 0]) != np.isnan(table[..., 0].T)):
+                raise DataError(f"{self.name}: some pairs (m, n) of the QTF are there and (n, m) are not; give both")
+        size, gap = self.asymmetry()
+        size = np.repeat(size.reshape(2, 3).max(axis=1), 3)  # what vanishes by symmetry is round-off of the others
+        if np.any(gap > HERMITIAN * size):
+            dof = int((gap / np.maximum(size, 1e-300)).argmax())
             raise DataError(
-                f"{self.name}: the QTF is not Hermitian, T2(m, n) = T2(n, m)*; "
-                f"give both triangles of the difference-frequency QTF in the time factor e^(+i omega t)"
+                f"{self.name}: the QTF is not Hermitian, T2(m, n) = T2(n, m)*: mode {dof + 1} differs by "
+                f"{100 * gap[dof] / size[dof]:.2g} % of the largest (threshold {100 * HERMITIAN:g} %); give one "
+                f"triangle of the difference-frequency QTF, or both in the time factor e^(+i omega t)"
             )
 
-    def at(self, omega_m: Array, omega_n: Array, heading: float) -> Array:
-        """T2 at pairs of frequencies, arrays of one shape (...) [rad/s] -> complex (..., 6); bilinear.
+    def asymmetry(self) -> tuple[Array, Array]:
+        """Largest |T2| and largest |T2(m, n) - T2(n, m)*| of each degree of freedom, (6,) both."""
+        size, gap = np.zeros(6), np.zeros(6)
+        for table in self.values:
+            known = np.nan_to_num(np.abs(table))
+            mirrored = np.nan_to_num(np.abs(table - np.conj(table.transpose(1, 0, 2))))
+            size, gap = np.maximum(size, known.max(axis=(0, 1))), np.maximum(gap, mirrored.max(axis=(0, 1)))
+        return size, gap
 
-        Raises DataError outside the frequencies or headings of the data.
+    @property
+    def reach(self) -> float:
+        """Largest difference of frequencies [rad/s] for which all pairs are known."""
+        unknown = np.isnan(self.values[..., 0]).any(axis=0)
+        gap = np.abs(self.omega[:, None] - self.omega[None, :])
+        inside = gap < gap[unknown].min() * (1 - 1e-6) if unknown.any() else np.ones_like(unknown)
+        return float(gap[inside].max())
+
+    def diagonal(self) -> Array:
+        """Mean drift per amplitude squared, real (N, H, 6)."""
+        return np.asarray(np.diagonal(self.values, axis1=1, axis2=2).real.transpose(2, 0, 1))
+
+    def knows(self, heading_m: float, heading_n: float) -> bool:
+        """Whether waves of these two headings [rad] are both covered: one heading, or computed pairs all around."""
+        try:
+            return all(self._pair(a, b) is not None for a, b, _ in self._corners(heading_m, heading_n))
+        except DataError:
+            return False
+
+    def at(self, omega_m: Array, omega_n: Array, heading: float, heading_n: float | None = None) -> Array:
+        """T2 at pairs of frequencies, arrays of one shape (...) [rad/s] -> complex (..., 6); bilinear (V23).
+
+        Below the lowest frequency it goes linearly to zero at omega = 0, as a long wave scatters nothing (V7).
+        heading_n : that of the wave n when it is another. Raises DataError outside the frequencies or headings of the
+        data, and where pairs were not computed.
         """
         shape = np.broadcast_shapes(np.shape(omega_m), np.shape(omega_n))
         m, n = (np.broadcast_to(np.asarray(part, float), shape).ravel() for part in (omega_m, omega_n))
         for part in (m, n):
-            check_range(part, float(self.omega[0]), float(self.omega[-1]), self.name, "the QTF")
-        i, j, w = heading_weights(self.headings, heading, self.name)
-        table = self.values[i] if w == 0.0 else (1.0 - w) * self.values[i] + w * self.values[j]
-        (a, s), (b, t) = _bracket(self.omega, m), _bracket(self.omega, n)
-        s, t = s[:, None], t[:, None]
-        result = (1 - s) * ((1 - t) * table[a, b] + t * table[a, b + 1])
-        result += s * ((1 - t) * table[a + 1, b] + t * table[a + 1, b + 1])
-        return np.asarray(result.reshape(*shape, 6))
+            check_range(part, 0.0, float(self.omega[-1]), self.name, "the QTF")
+        m, n = np.minimum(m, self.omega[-1]), np.minimum(n, self.omega[-1])
+        if heading_n is None or abs(heading_n - heading) < 1e-9:
+            i, j, w = heading_weights(self.headings, heading, self.name)
+            table = self.values[i] if w == 0.0 else (1.0 - w) * self.values[i] + w * self.values[j]
+        else:
+            table = np.zeros_like(self.values[0])
+            for a, b, weight in self._corners(heading, heading_n):
+                found = self._pair(a, b)
+                if found is None:
+                    raise DataError(f"{self.name}: the QTF holds no pairs of these two headings")
+                table = table + weight * found
+        return np.asarray(self._bilinear(table, m, n).reshape(*shape, 6))
+
+    def _corners(self, heading_m: float, heading_n: float) -> list[tuple[int, int, float]]:
+        """The pairs of heading indices around two headings, and their weights."""
+        i, j, w = heading_weights(self.headings, heading_m, self.name)
+        k, l, v = heading_weights(self.headings, heading_n, self.name)
+        corners = [(i, k, (1 - w) * (1 - v)), (i, l, (1 - w) * v), (j, k, w * (1 - v)), (j, l, w * v)]
+        return [corner for corner in corners if corner[2] > 0.0]
+
+    def _pair(self, a: int, b: int) -> Array | None:
+        if a == b:
+            return np.asarray(self.values[a])
+        if a < b:
+            return self.cross.get((a, b))
+        found = self.cross.get((b, a))
+        return None if found is None else np.conj(found.transpose(1, 0, 2))
+
+    def _bilinear(self, table: Array, m: Array, n: Array) -> Array:
+        nodes, table = self._to_zero(table)
+        (a, s), (b, t) = _bracket(nodes, m), _bracket(nodes, n)
+        unknown = np.isnan(table[..., 0])
+        filled = np.where(unknown[..., None], 0.0, table) if unknown.any() else table
+        result = np.zeros((m.size, 6), dtype=complex)
+        for di, wi in ((0, 1 - s), (1, s)):
+            for dj, wj in ((0, 1 - t), (1, t)):
+                weight = wi * wj
+                lacking = np.flatnonzero(unknown[a + di, b + dj] & (weight > 1e-9))
+                if lacking.size:
+                    raise DataError(
+                        f"{self.name}: the QTF is asked for at {m[lacking[0]]:.4g} and {n[lacking[0]]:.4g} rad/s, but "
+                        f"was computed for differences up to {self.reach:.4g} rad/s; compute more pairs or lower "
+                        f"the border of the low band (analyses.frequency_domain.low.to)"
+                    )
+                result += weight[:, None] * filled[a + di, b + dj]
+        return result
+
+    def _to_zero(self, table: Array) -> tuple[Array, Array]:
+        """Frequencies and table with omega = 0 in front, where T2 vanishes (unknown for differences not computed)."""
+        nodes, count = np.concatenate([[0.0], self.omega]), self.omega.size
+        wide = np.zeros((count + 1, count + 1, 6), dtype=complex)
+        wide[1:, 1:] = table
+        if np.isnan(table).any():
+            far = np.flatnonzero(nodes > self.reach)
+            wide[0, far] = wide[far, 0] = np.nan
+        return nodes, wide
+
+    def describe(self) -> dict[str, Any]:
+        """What it holds, as plain JSON values: rad/s, headings in degrees."""
+        degrees = np.degrees(self.headings)
+        return {
+            "frequencies": {"count": int(self.omega.size), "from": float(self.omega[0]), "to": float(self.omega[-1])},
+            "headings_deg": [round(float(value), 6) for value in degrees],
+            "heading_pairs_deg": [[round(float(degrees[a]), 6), round(float(degrees[b]), 6)] for a, b in self.cross],
+            "differences_to": self.reach,
+        }
+
+    def moved(self, t: Array) -> QTF:
+        """About another point, forces F_new = Tᵀ F_old (V1); force in the plane alone gives no roll or pitch (V2)."""
+        flat = not np.any(np.nan_to_num(self.values[..., 2:5]))
+        return replace(
+            self,
+            values=_moved(self.values, t, flat),
+            cross={pair: _moved(values, t, flat) for pair, values in self.cross.items()},
+        )
+
+
+def _moved(values: Array, t: Array, flat: bool) -> Array:
+    result = values @ t
+    if flat:
+        result[..., 2:5] = np.where(np.isnan(values[..., 2:5]), np.nan, 0.0)
+    return np.asarray(result)
 
 
 def _bracket(nodes: Array, x: Array) -> tuple[Array, Array]:

@@ -1,14 +1,12 @@
-/* The YAML editor: a coloured copy under the text area, line numbers with marks, the draft kept in this browser. */
+/* The YAML side of the editor: a coloured copy under the text area, line numbers with marks. */
 (function () {
   "use strict";
-  const DRAFT = "slowdrift.draft";
-  const SETTLE_MS = 700;
+  const { theCase, form } = window.slowdrift;
   /* Only while the page is there: a timer may fire, or an upload end, after the reader has left. */
-  const set = (id, props) => document.getElementById("new-page") && window.dash_clientside.set_props(id, props);
+  const set = theCase.set;
   const escape = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
-  let settling = null;
-  let checked = null;
   let loadedFor = null;
+  let painted = "";
 
   /* One line of YAML in colours: comment, key, number. Never more than a hint. */
   function colour(line) {
@@ -41,33 +39,35 @@
       .join("");
   }
 
-  function settle(text) {
-    clearTimeout(settling);
-    if (text === checked) return;
-    settling = setTimeout(() => {
-      checked = text;
-      set("case-settled", { data: text });
-    }, SETTLE_MS);
-  }
-
-  /* Called with each new text and each new set of marks. */
-  function editor(text, marks) {
+  /* Called with each new text: from the keyboard, an example, a stored case, or the form. */
+  function editor(text) {
     const area = document.getElementById("case-text");
     text = text || "";
     if (area && loadedFor !== area) {
       loadedFor = area;
-      checked = null;
-      const draft = localStorage.getItem(DRAFT);
-      if (!text && draft && !new URLSearchParams(window.location.search).has("case")) {
+      painted = "";
+      const draft = theCase.open(/[?&](case|run)=/.test(window.location.search));
+      form.mount();
+      if (!text && draft) {
         set("case-text", { value: draft });
         return "draft";
       }
     }
-    if (text || localStorage.getItem(DRAFT)) localStorage.setItem(DRAFT, text);
-    paint(text, marks);
-    settle(text);
+    theCase.typed(text);
+    repaint();
     return String(text.length);
   }
+
+  function repaint() {
+    const { text, errors, readError } = theCase.state;
+    const marks = errors.filter((one) => one.line);
+    if (readError && readError.line && !marks.length) marks.push(readError);
+    const key = JSON.stringify([text, marks.map((one) => [one.line, one.message])]);
+    if (key === painted || !document.getElementById("case-paint")) return;
+    painted = key;
+    paint(text, marks);
+  }
+  theCase.listen(repaint);
 
   function example(name, examples, text) {
     const keep = window.dash_clientside.no_update;
@@ -103,16 +103,10 @@
     else if (box && box.getBoundingClientRect().top > window.innerHeight - 120) box.scrollIntoView({ block: "center" });
   }
 
-  document.addEventListener("click", (event) => {
-    const button = event.target.closest ? event.target.closest(".sd-problem") : null;
-    if (button) goTo(Number(button.dataset.line), button.dataset.field);
-  });
-
   document.addEventListener("keydown", (event) => {
     if (event.target.id !== "case-text" || event.key !== "Enter" || !(event.ctrlKey || event.metaKey)) return;
     event.preventDefault();
-    const run = document.getElementById("case-run");
-    if (run) run.click();
+    document.getElementById("case-run").click();
   });
 
   /* A file goes from the browser straight to the REST API, however large. */
@@ -146,6 +140,7 @@
     return "asked";
   }
 
+  window.slowdrift.yaml = { goTo };
   window.dash_clientside = window.dash_clientside || {};
   window.dash_clientside.slowdrift = Object.assign(window.dash_clientside.slowdrift || {}, { editor, example, upload });
 })();

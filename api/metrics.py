@@ -1,0 +1,143 @@
+"""Prometheus: what this process answered and how fast, and what the database says of queues and runs."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from datetime import timedelta
+
+from prometheus_client import CollectorRegistry, Histogram, ProcessCollector, generate_latest
+from prometheus_client.core import GaugeMetricFamily, Metric
+from prometheus_client.registry import Collector
+from sqlalchemy.exc import SQLAlchemyError
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from store.clock import utc_now
+from store.database import Database
+from store.models import STATES
+from store.priority import name_of
+from store.repositories import QueueRepository
+
+WINDOW = timedelta(minutes=10)
+"""Runs that ended longer ago than this before a scrape are not seen by the histogram of run times."""
+METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")
+FAST = (0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 30)
+SLOW = (0.1, 0.3, 1, 3, 10, 30, 100, 300, 1000, 3000, 10_000, 30_000)
+
+
+class Metrics:
+    """The registry of one app."""
+
+    def __init__(self, database: Database):
+        self.registry = CollectorRegistry()
+        self.requests = Histogram(
+            "slowdrift_request_seconds", "Time to the end of an answer; event streams apart", ("method", "route", "status"),
+            buckets=FAST, registry=self.registry,
+        )  # fmt: skip
+        self.runs = Histogram(
+            "slowdrift_run_seconds", "From a run's first claim to its end", ("kind", "state"), buckets=SLOW,
+            registry=self.registry,
+        )  # fmt: skip
+        self._database, self._lock = database, threading.Lock()
+        self._seen: set[str] = set()
+        self._first = True
+        ProcessCollector(registry=self.registry)
+        self.registry.register(_Rows(database))
+
+    def text(self) -> bytes:
+        with self._lock:
+            self._observe_runs()
+        return generate_latest(self.registry)
+
+    def _observe_runs(self) -> None:
+        """Each ended run once; those from before the first scrape are not counted."""
+        try:
+            with self._database.read() as session:
+                ended = QueueRepository(session).ended_since(utc_now() - WINDOW)
+        except SQLAlchemyError:
+            return
+        for run in ended:
+            if run.run_id not in self._seen and not self._first:
+                self.runs.labels(run.kind, run.state).observe(run.seconds)
+        self._seen, self._first = {run.run_id for run in ended}, False
+
+
+class _Rows(Collector):
+    """Gauges out of the database, read at each scrape."""
+
+    def __init__(self, database: Database):
+        self._database = database
+
+    def describe(self) -> list[Metric]:
+        return []
+
+    def collect(self) -> Iterator[Metric]:
+        up = GaugeMetricFamily("slowdrift_database_up", "1 when the database answers")
+        began = time.perf_counter()
+        try:
+            with self._database.read() as session:
+                queues = QueueRepository(session)
+                waiting, states, workers = queues.waiting(), queues.states(), queues.workers()
+        except SQLAlchemyError:
+            up.add_metric([], 0)
+            yield up
+            return
+        up.add_metric([], 1)
+        yield up
+        yield GaugeMetricFamily(
+            "slowdrift_database_seconds", "Time of this scrape's queries", time.perf_counter() - began
+        )
+        labels = ["queue", "priority"]
+        queued = GaugeMetricFamily("slowdrift_tasks_queued", "Tasks that wait", labels=labels)
+        running = GaugeMetricFamily("slowdrift_tasks_running", "Tasks at work", labels=labels)
+        oldest = GaugeMetricFamily("slowdrift_oldest_queued_seconds", "Age of the oldest run that waits", labels=labels)
+        for each in waiting:
+            place = [each.queue, name_of(each.priority)]
+            queued.add_metric(place, each.queued)
+            running.add_metric(place, each.running)
+            oldest.add_metric(place, each.oldest_seconds or 0.0)
+        yield from (queued, running, oldest)
+        runs = GaugeMetricFamily("slowdrift_runs", "Runs in the database by state", labels=["state"])
+        for state in STATES:
+            runs.add_metric([state], states.get(state, 0))
+        yield runs
+        yield GaugeMetricFamily("slowdrift_workers_busy", "Worker processes with a task in hand", len(workers))
+
+
+class Meter:
+    """Times every answer under the address of its route."""
+
+    def __init__(self, app: ASGIApp, metrics: Metrics):
+        self.app, self.metrics = app, metrics
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            return await self.app(scope, receive, send)
+        began, seen = time.perf_counter(), {"status": 500, "stream": False}
+
+        async def watch(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                seen["status"] = message["status"]
+                seen["stream"] = any(
+                    name == b"content-type" and value.startswith(b"text/event-stream")
+                    for name, value in message["headers"]
+                )
+            await send(message)
+
+        try:
+            return await self.app(scope, receive, watch)
+        finally:
+            if not seen["stream"]:
+                method = scope["method"] if scope["method"] in METHODS else "other"
+                labels = (method, _route(scope), str(seen["status"]))
+                self.metrics.requests.labels(*labels).observe(time.perf_counter() - began)
+
+
+def _route(scope: Scope) -> str:
+    """The address with its parameters' names; whatever no route answers is one, so that strangers make no series."""
+    path: str | None = getattr(scope.get("route"), "path", None)
+    if path is None:
+        return "other"
+    first = f"/{scope['path'].split('/')[1]}"
+    return path if path.startswith(first) or first != "/api" else f"/api/v1{path}"

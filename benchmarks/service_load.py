@@ -1,0 +1,219 @@
+"""The service under load: `python benchmarks/service_load.py [--kind embedded postgres-redis postgres-rabbitmq]`.
+
+1. Overhead of one run: small frequency-domain runs one after another, from the request's arrival to the stored result,
+   less what the solver alone takes in a process of its own.
+2. Load: 500 such runs submitted one by one while 100 clients poll, each once a second; times of all answers to reads.
+3. Queueing: 10 000 runs in one request.
+
+On a quiet machine; the load of the machine and the processor time of everything else are printed beside the numbers.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import contextlib
+import json
+import os
+import random
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+import uuid
+from collections.abc import Iterator
+from datetime import datetime
+from pathlib import Path
+
+import httpx
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from store.settings import Settings  # noqa: E402
+from tests.service.conftest import KINDS, RABBITMQ, REDIS, create_database, drop_database  # noqa: E402
+from tests.service.running import service, wait_until  # noqa: E402
+
+CASE = (ROOT / "examples" / "hanging-riser-case1.yaml").read_text()
+ANALYSES = ["statics", "frequency_domain"]
+BARE = """
+import json, sys, time
+from solver.case import load_case
+from solver.run import run, select, warm_up
+warm_up()
+case = select(load_case(sys.stdin.read()), ("statics", "frequency_domain"))
+times = []
+for _ in range(60):
+    began = time.perf_counter(); run(case, None); times.append(time.perf_counter() - began)
+print(json.dumps(sorted(times)[len(times) // 2]))
+"""
+
+
+def bare() -> float:
+    """Median seconds of the solver alone."""
+    done = subprocess.run(
+        [sys.executable, "-c", BARE], input=CASE, capture_output=True, text=True, check=True, cwd=ROOT,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+    return float(json.loads(done.stdout))
+
+
+@contextlib.contextmanager
+def started(kind: str, workers: int) -> Iterator[httpx.Client]:
+    name = f"sd_load_{uuid.uuid4().hex[:10]}"
+    with tempfile.TemporaryDirectory(prefix="sd-load-", ignore_cleanup_errors=True) as folder:
+        given: dict[str, object] = {"data_dir": Path(folder), "queue_prefix": name}
+        if kind != "embedded":
+            given["database_url"] = create_database(name)
+            given["broker_url"] = REDIS if kind == "postgres-redis" else RABBITMQ
+        try:
+            with service(Settings.model_validate(given), False, "--workers", str(workers)) as client:
+                yield client
+        finally:
+            if kind != "embedded":
+                drop_database(name)
+
+
+def case_of(number: int) -> str:
+    """Every run another case, so that nothing is known before."""
+    return CASE.replace("name: ", f"name: {number} ", 1)
+
+
+def submit(client: httpx.Client, number: int) -> str:
+    answer = client.post("/api/v1/runs", json={"yaml": case_of(number), "analyses": ANALYSES})
+    assert answer.status_code == 202, answer.text
+    return str(answer.json()["id"])
+
+
+def finished(client: httpx.Client, run_id: str) -> dict[str, object]:
+    while True:
+        run: dict[str, object] = client.get(f"/api/v1/runs/{run_id}").json()
+        if run["state"] in ("succeeded", "failed", "cancelled"):
+            assert run["state"] == "succeeded", run
+            return run
+        time.sleep(0.01)
+
+
+def seconds_of(run: dict[str, object]) -> float:
+    """From the request to the stored result, by the server's clock."""
+    first, last = (datetime.fromisoformat(str(run[name])) for name in ("created_at", "finished_at"))
+    return (last - first).total_seconds()
+
+
+def overhead(client: httpx.Client, runs: int, alone: float) -> dict[str, float]:
+    times = []
+    for number in range(runs):
+        times.append(seconds_of(finished(client, submit(client, 100_000 + number))) - alone)
+        time.sleep(random.uniform(0.2, 0.5))  # so that nobody is awake by chance
+    return {"overhead_median_ms": 1e3 * statistics.median(times), "overhead_max_ms": 1e3 * max(times)}
+
+
+# -- 100 clients
+
+
+async def _get(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, path: str) -> int:
+    writer.write(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nAccept-Encoding: identity\r\n\r\n".encode())
+    await writer.drain()
+    head = await reader.readuntil(b"\r\n\r\n")
+    length = next(line for line in head.lower().split(b"\r\n") if line.startswith(b"content-length"))
+    await reader.readexactly(int(length.partition(b":")[2]))
+    return int(head.split(b" ", 2)[1])
+
+
+async def _poll(port: int, paths: list[str], until: float, times: list[float], bad: list[int]) -> None:
+    await asyncio.sleep(random.random())
+    reader, writer = await asyncio.open_connection("127.0.0.1", port)
+    chance = random.Random()
+    while time.monotonic() < until:
+        began = time.perf_counter()
+        status = await _get(reader, writer, chance.choice(paths))
+        times.append(time.perf_counter() - began)
+        if status != 200:
+            bad.append(status)
+        await asyncio.sleep(max(0.0, 1.0 - (time.perf_counter() - began)))
+    writer.close()
+
+
+def poll(port: int, clients: int, seconds: float, ids: list[str]) -> None:
+    """The child process: prints its times."""
+    times: list[float] = []
+    bad: list[int] = []
+    paths = [f"/api/v1/runs/{run_id}" for run_id in ids] * 3 + ["/api/v1/runs?limit=50"] * len(ids)
+
+    async def all_of_them() -> None:
+        until = time.monotonic() + seconds
+        await asyncio.gather(*(_poll(port, paths, until, times, bad) for _ in range(clients)))
+
+    asyncio.run(all_of_them())
+    print(json.dumps({"times": times, "bad": bad}))
+
+
+def load(client: httpx.Client, runs: int, clients: int, workers: int, alone: float) -> dict[str, float]:
+    first = [submit(client, 200_000 + number) for number in range(10)]
+    port, seconds = client.base_url.port, max(30.0, runs * 0.12)
+    command = [sys.executable, __file__, "--poll", str(port), str(clients), str(seconds), *first]
+    polling = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT)
+    time.sleep(2)
+    began = time.perf_counter()
+    for number in range(runs):
+        submit(client, number)
+    submitted = time.perf_counter() - began
+    wait_until(lambda: client.get("/api/v1/runs?state=queued,running&limit=1").json()["total"] == 0, 600)
+    done = time.perf_counter() - began
+    found = json.loads(polling.communicate()[0])
+    times = sorted(found["times"])
+    assert not found["bad"], found["bad"]
+    return {
+        "reads": len(times),
+        "read_p50_ms": 1e3 * times[len(times) // 2],
+        "read_p99_ms": 1e3 * times[int(0.99 * len(times))],
+        "read_max_ms": 1e3 * times[-1],
+        "submit_s": submitted,
+        "through_s": done,
+        "per_run_over_solver_ms": 1e3 * (done * workers / runs - alone),
+    }
+
+
+def queue(client: httpx.Client, runs: int) -> dict[str, float]:
+    names = client.post("/api/v1/cases", content=CASE, headers={"content-type": "application/yaml"}).json()
+    case = client.get(f"/api/v1/cases/{names['id']}").json()["case"]
+    pointer = f"/line_types/{next(iter(case['line_types']))}/EA"
+    grid = {pointer: [1.0e9 + number for number in range(runs)]}
+    began = time.perf_counter()
+    body = {"case_id": names["id"], "analyses": ANALYSES, "grid": grid}
+    answer = client.post("/api/v1/studies", json=body, timeout=300)
+    took = time.perf_counter() - began
+    assert answer.status_code == 202, answer.text
+    began = time.perf_counter()
+    client.post(f"/api/v1/studies/{answer.json()['id']}/cancel", timeout=300)
+    return {"queue_10000_s": took, "cancel_10000_s": time.perf_counter() - began}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("--kind", nargs="*", choices=KINDS, default=["embedded", "postgres-redis"])
+    parser.add_argument("--runs", type=int, default=500)
+    parser.add_argument("--clients", type=int, default=100)
+    parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--poll", nargs="*", help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.poll:
+        port, clients, seconds, *ids = options.poll
+        return poll(int(port), int(clients), float(seconds), ids)
+    alone = bare()
+    print(f"machine: {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}; solver alone {1e3 * alone:.1f} ms a run")
+    for kind in options.kind:
+        with started(kind, options.workers) as client:
+            finished(client, submit(client, 999_999))  # workers are awake
+            found = overhead(client, 30, alone) | load(client, options.runs, options.clients, options.workers, alone)
+            found |= queue(client, 10_000)
+        print(
+            f"{kind} (load {os.getloadavg()[0]:.1f}): "
+            + ", ".join(f"{name} {value:.4g}" for name, value in found.items())
+        )
+    return None
+
+
+if __name__ == "__main__":
+    main()

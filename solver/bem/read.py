@@ -1,0 +1,158 @@
+"""Meshes from files: GDF (WAMIT), Nemoh's .dat, MSH (gmsh, text), STL (text and binary). The content says the kind.
+
+Every reader is bounded by the size of what it is given: nothing is set aside for numbers that a header only claims.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import PurePosixPath, PureWindowsPath
+
+import numpy as np
+
+from ..outcome import DataError
+from .msh import read_msh
+from .panels import Panels, joined, welded
+from .spec import MAX_PANELS
+from .textlines import Lines
+
+Array = np.ndarray
+MAX_BYTES = 32 * 1024 * 1024
+COORDINATE = 1e6  # m
+_FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def read_mesh(payload: bytes, filename: str) -> tuple[Panels, str]:
+    """The panels of a file as they stand in it, and its format. Symmetries that a file declares are unfolded.
+
+    Raises DataError: one sentence with the file, the line (of text), the value and the remedy.
+    """
+    name = PureWindowsPath(PurePosixPath(filename).name).name[:120] or "mesh"
+    if len(payload) > MAX_BYTES:
+        raise DataError(f"{name}: the file has {len(payload) / 2**20:.1f} MB; allowed: at most {MAX_BYTES // 2**20} MB")
+    if not payload.strip():
+        raise DataError(f"{name}: the file is empty; upload it again")
+    kind, reader = _kind(payload, name)
+    mesh = reader(payload, name)
+    if mesh.count == 0:
+        raise DataError(f"{name}: the file holds no panels")
+    if mesh.count > 2 * MAX_PANELS:
+        raise DataError(f"{name}: {mesh.count} panels; allowed: at most {2 * MAX_PANELS}, {MAX_PANELS} below the water")
+    used = mesh.vertices[np.unique(mesh.faces)]
+    if not np.all(np.isfinite(used)) or np.abs(used).max() > COORDINATE:
+        raise DataError(f"{name}: a corner lies at {np.abs(used).max():g}; allowed: finite, within {COORDINATE:g} m")
+    return welded(mesh), kind
+
+
+def _kind(payload: bytes, name: str) -> tuple[str, Callable[[bytes, str], Panels]]:
+    if _facets(payload) is not None:
+        return "STL", _read_stl
+    head = payload[:4096]
+    if head.lstrip().startswith(b"$MeshFormat"):
+        return "MSH", read_msh
+    if head.lstrip()[:5].lower() == b"solid":
+        return "STL", _read_ascii_stl
+    if b"\0" in head:
+        if payload[80:84].strip() and len(payload) > 84 and name.lower().endswith(".stl"):
+            said = int.from_bytes(payload[80:84], "little")
+            raise DataError(
+                f"{name}: a binary STL of {said} facets has {84 + 50 * said} bytes, this file has {len(payload)}; "
+                "it is truncated or damaged, write it again"
+            )
+        raise DataError(
+            f"{name}: this is neither text nor a whole binary STL; upload STL, GDF, MSH (text) or Nemoh .dat"
+        )
+    first = head.decode("latin-1").splitlines()[0].split()
+    if len(first) == 2 and all(re.fullmatch(r"\d+", word) for word in first) and first[0] == "2":
+        return "Nemoh", _read_nemoh
+    return "GDF", _read_gdf
+
+
+# --- WAMIT
+
+
+def _read_gdf(payload: bytes, name: str) -> Panels:
+    """Title; ULEN GRAV; ISX ISY; NPAN; then twelve coordinates a panel, what follows them on their line ignored."""
+    lines = Lines(payload, name)
+    lines.take("the title")
+    lines.floats(2, "ULEN and GRAV")
+    isx, isy = (lines.symmetry(value) for value in lines.integers(2, "ISX and ISY"))
+    count = lines.integers(1, "the number of panels, NPAN")[0]
+    if not 0 < count <= 2 * MAX_PANELS:
+        raise lines.fault(f"NPAN is {count}; allowed: 1 to {2 * MAX_PANELS} (higher-order geometry is not read)")
+    corners = np.empty((min(count, len(payload) // 12 + 1), 4, 3))
+    for panel in range(count):
+        values = lines.numbers(12, f"panel {panel + 1} of {count}")
+        corners[panel] = values.reshape(4, 3)
+    mesh = Panels(corners.reshape(-1, 3), np.arange(4 * count).reshape(-1, 4))
+    for axis, flag in ((0, isx), (1, isy)):
+        if flag:
+            mesh = joined([mesh, mesh.mirrored(axis)])
+    return mesh
+
+
+# --- Nemoh
+
+
+def _read_nemoh(payload: bytes, name: str) -> Panels:
+    """`2 symmetry`; lines `number x y z` up to a line of zeros; lines of four corners up to a line of zeros."""
+    lines = Lines(payload, name)
+    symmetric = lines.symmetry(lines.integers(2, "`2 symmetry`")[1])
+    points: list[Array] = []
+    while True:
+        values = lines.floats(4, "number, x, y, z of a corner, or the line of zeros after the last")
+        if values[0] == 0:
+            break
+        if values[0] != len(points) + 1:
+            raise lines.fault(f"corner {values[0]:g} follows corner {len(points)}; number them 1, 2, 3 …")
+        points.append(values[1:])
+    faces: list[list[int]] = []
+    while not lines.done():
+        panel = lines.integers(4, "the four corners of a panel, or the line of zeros after the last")
+        if not any(panel):
+            break
+        if not all(1 <= corner <= len(points) for corner in panel):
+            raise lines.fault(f"a panel has the corners {panel}; allowed: 1 to {len(points)}")
+        faces.append(panel)
+    mesh = Panels(np.array(points).reshape(-1, 3), np.array(faces, int).reshape(-1, 4) - 1)
+    return joined([mesh, mesh.mirrored(1)]) if symmetric else mesh
+
+
+# --- STL
+
+
+def _facets(payload: bytes) -> int | None:
+    """Number of facets of a whole binary STL; None when it is not one."""
+    count = int.from_bytes(payload[80:84], "little")
+    return count if len(payload) > 84 and len(payload) == 84 + 50 * count else None
+
+
+def _triangles(corners: Array) -> Panels:
+    count = corners.shape[0]
+    index = np.arange(3 * count).reshape(-1, 3)
+    return Panels(corners.reshape(-1, 3).astype(float), np.column_stack([index, index[:, 2]]))
+
+
+def _read_stl(payload: bytes, name: str) -> Panels:
+    return _triangles(np.frombuffer(payload, _FACET, offset=84)["corners"])
+
+
+def _read_ascii_stl(payload: bytes, name: str) -> Panels:
+    """Only `vertex x y z` and `endfacet` matter: three vertices a facet."""
+    lines = Lines(payload, name)
+    corners: list[Array] = []
+    ended = False
+    while not lines.done():
+        words = lines.take("a facet, or endsolid").split()
+        key = words[0].lower()
+        if key == "vertex":
+            corners.append(lines.parse(words[1:], 3, "x, y, z of a vertex"))
+        elif key == "endfacet" and len(corners) % 3:
+            raise lines.fault(f"a facet ends with {len(corners) % 3} vertices; expected 3")
+        elif key not in ("solid", "facet", "outer", "endloop", "endfacet", "endsolid"):
+            raise lines.fault(f"{words[0][:40]!r} is no word of an STL; expected facet, vertex, endfacet or endsolid")
+        ended = key == "endsolid"
+    if not ended:
+        raise lines.fault("the file ends without endsolid; it is truncated, write it again")
+    return _triangles(np.array(corners).reshape(-1, 3, 3))

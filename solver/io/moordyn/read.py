@@ -1,0 +1,333 @@
+"""A MoorDyn deck → a case. Conventions and what cannot be said: docs/moordyn.md."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from dataclasses import dataclass
+from typing import Any
+
+import yaml
+
+from ...case import Case, parse_case
+from ...case.environment import Environment, Seabed
+from ...case.text import read_text
+from ...case.vessel import Vessel
+from ...outcome import CaseError, FieldError
+from .deck import Deck, Faults, parse_deck, parse_number
+from .report import Report, printable
+from .system import Chain, Point, System, build_system
+
+SOIL, BED_DAMPING = 3.0e6, 3.0e5  # MoorDyn's defaults of kBot [Pa/m] and cBot [Pa s/m]
+GRAVITY, DENSITY = 9.80665, 1025.0
+FILL = "FILL IN"
+
+_OPTIONS = {  # words of an option, lower case -> its meaning here
+    "g": "gravity", "gravity": "gravity", "rho": "density", "rhow": "density", "wtrdnsty": "density", "waterdensity": "density",
+    "wtrdpth": "depth", "depth": "depth", "wtrdepth": "depth", "kbot": "soil", "kb": "soil", "cbot": "damping", "cb": "damping",
+    "frictioncoefficient": "friction", "mu_kt": "friction", "mu_ka": "friction",
+    "wavekin": "water", "currents": "water", "current": "water", "waterkin": "water", "seafloorfile": "bathymetry",
+}  # fmt: skip
+_OF_THE_SOLVER = (
+    "echo", "dtm", "dt", "cfl", "tscheme", "writelog", "dtic", "tmaxic", "cdscaleic", "threshic", "icdfac", "icthresh",
+    "ictmax", "dtout", "writeunits", "icgendynamic", "disableoutput", "disableouttime", "outswitch", "inertialf",
+    "inertialf_rampt", "unifycurrentgrid", "dtwave", "wavekin_rampt", "fricdamp", "cv", "mc", "statdynfricscale",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Imported:
+    """What came out of a deck.
+
+    data : the case as plain data. case : the checked case; None while fields are missing. yaml : its text, the report at
+    its head as comments. errors : what keeps it from being a case, field by field.
+    """
+
+    data: dict[str, Any]
+    case: Case | None
+    yaml: str
+    report: Report
+    errors: tuple[FieldError, ...] = ()
+
+
+def read_deck(text: str | bytes, base: str | bytes | None = None, name: str | None = None) -> Imported:
+    """A case from the text of a deck.
+
+    base : text of a case (or only of its `vessel:`) whose vessel, sea and analyses are kept; its lines are replaced.
+    Without it, where lines hang on a vessel, the vessel is a template to be filled in, which the check of a case refuses.
+    Raises CaseError with line numbers of the deck, or with fields of the base.
+    """
+    deck, report, faults = parse_deck(text), Report(), Faults()
+    system = build_system(deck, faults, report)
+    options = _options(deck, faults, report)
+    faults.stop()
+    kept = _base(base)
+    data: dict[str, Any] = {
+        "slowdrift": 1,
+        "name": name or kept.get("name") or printable(deck.title).strip("- ")[:200] or "MoorDyn deck",
+    }
+    if "description" in kept:
+        data["description"] = kept["description"]
+    data["environment"] = _environment(options, kept, system, report)
+    vessel = kept.get("vessel")
+    coupled = any(point.kind == "coupled" for point in system.points.values())
+    data["vessel"] = vessel if vessel is not None else _template(report) if coupled else None
+    data["line_types"] = _types(system)
+    data |= _lines(system, data["environment"]["depth"], vessel, report)
+    _bed_damping(options, system, data, report)
+    data["analyses"] = kept.get("analyses") or {"statics": {}}
+    data = {key: value for key, value in data.items() if value is not None and value != []}
+    report.assumed.extend(deck.notes)
+    return _finished(data, report)
+
+
+def _finished(data: dict[str, Any], report: Report) -> Imported:
+    case: Case | None = None
+    errors: tuple[FieldError, ...] = ()
+    try:
+        case = parse_case(data)
+    except CaseError as error:
+        if not report.missing:
+            raise
+        errors = tuple(error.errors)
+    text = yaml.safe_dump(data, sort_keys=False, allow_unicode=True, default_flow_style=None, width=160)
+    return Imported(data, case, report.comment() + text, report, errors)
+
+
+def _base(text: str | bytes | None) -> dict[str, Any]:
+    if text is None:
+        return {}
+    data = read_text(text)[0]
+    if "vessel" not in data and "mass" in data:
+        data = {"vessel": data}
+    if not isinstance(data.get("vessel"), dict):
+        raise CaseError([FieldError(("vessel",), "the case given for the vessel has none")])
+    try:  # only to refuse early what a case would refuse too
+        Vessel.model_validate(data["vessel"])
+    except ValueError:
+        whole = {"slowdrift": 1, "name": "vessel", "environment": {"depth": 1}, "analyses": {"statics": {}}}
+        parse_case(whole | {"vessel": data["vessel"]})
+        raise
+    return dict(data)
+
+
+def _options(deck: Deck, faults: Faults, report: Report) -> dict[str, float]:
+    """Options that a case knows, in SI; the others are in the report or in the faults."""
+    found: dict[str, float] = {}
+    for line, words in deck.raw.get("options", []):
+        if len(words) < 2:
+            faults.add(line, ("options",), "an option is a value and a name", " ".join(words))
+            continue
+        value, word = words[0], words[1]
+        meaning = _OPTIONS.get(word.lower())
+        if meaning is None:
+            if word.lower() not in _OF_THE_SOLVER:
+                report.dropped.append(f"option {word} (line {line}): not known here")
+        elif meaning == "water":
+            if value.strip('"') not in ("0", "0.0", "-", "", "none", "None", "Null", "null"):
+                report.dropped.append(f"option {word} {value}: sea and current come from the case, not from the deck")
+        elif meaning == "bathymetry" or (meaning == "depth" and re.search(r"[A-Za-z/\\]{2,}", value)):
+            faults.add(
+                line, ("options", word), "a bathymetry file: the seabed of a case is flat; give a depth in m", value
+            )
+        elif meaning in found and meaning != "friction":
+            faults.add(line, ("options", word), "this option is given twice", value)
+        else:
+            number = parse_number(
+                value, line, ("options", word), faults, 1e-9 if meaning in ("gravity", "density") else 0.0
+            )
+            found[meaning] = max(number, found.get(meaning, 0.0))
+    for section, what in (("failure", "the case is the intact mooring"), ("control", "line lengths stay as they are")):
+        if deck.raw.get(section):
+            report.dropped.append(f"section {section.upper()}: {what}")
+    return found
+
+
+def _environment(options: dict[str, float], kept: dict[str, Any], system: System, report: Report) -> dict[str, Any]:
+    environment = dict(kept.get("environment") or {})
+    depth = environment.get("depth")
+    if options.get("depth"):
+        if depth is not None and abs(_number(depth, "depth") - options["depth"]) > 1e-6 * options["depth"]:
+            message = f"the case has a depth of {depth}, the deck one of {options['depth']:g} m; make them one"
+            raise CaseError([FieldError(("environment", "depth"), message, str(depth))])
+        depth = options["depth"]
+    elif depth is None:
+        deepest = min((point.xyz[2] for point in system.points.values() if point.kind == "fixed"), default=0.0)
+        if deepest >= 0:
+            raise CaseError(
+                [FieldError(("deck", "options", "WtrDpth"), "the deck has no water depth and no anchor to tell it")]
+            )
+        depth = -deepest
+        report.assumed.append(f"depth {depth:g} m, that of the deepest fixed point; the deck gives none")
+    water = dict(environment.get("water") or {})
+    for key, default in (("density", DENSITY), ("gravity", GRAVITY)):
+        if key in options:
+            if key in water and abs(_number(water[key], key) - options[key]) > 1e-9 * options[key]:
+                report.assumed.append(f"{key} {options[key]:g} of the deck, in place of the case's {water[key]}")
+            water[key] = options[key]
+        elif key not in water:
+            water[key] = default
+            report.assumed.append(f"{key} {default:g}; the deck gives none")
+    environment |= {"depth": _number(depth, "depth"), "water": water, "seabed": _seabed(options, environment, report)}
+    return environment
+
+
+def _number(value: Any, field: str) -> float:
+    """A quantity of the base in SI."""
+    if isinstance(value, int | float):
+        return float(value)
+    part = {"depth": 1.0} | ({"water": {field: value}} if field != "depth" else {"depth": value})
+    read = Environment.model_validate(part)
+    return float(read.depth if field == "depth" else getattr(read.water, field))
+
+
+def _seabed(options: dict[str, float], environment: dict[str, Any], report: Report) -> dict[str, Any]:
+    seabed = {key: value for key, value in (environment.get("seabed") or {}).items() if key == "transition"}
+    seabed["soil"] = options.get("soil", SOIL)
+    if "soil" not in options:
+        report.assumed.append(f"seabed stiffness {SOIL:g} Pa/m, MoorDyn's default")
+    report.assumed.append(
+        f"the bed's stiffness grows over {seabed.get('transition', '0.1 m')} (seabed.transition); MoorDyn's starts at once"
+    )
+    friction = options.get("friction", 0.0)
+    if friction > 0 and "friction" in Seabed.model_fields:
+        seabed["friction"] = friction
+        report.assumed.append(f"seabed friction {friction:g} in every direction, regularised as docs/theory.md says")
+    elif friction > 0:
+        report.dropped.append(
+            f"seabed friction {friction:g}: anchors feel more, and the vessel's offset is a little larger"
+        )
+    return seabed
+
+
+def _bed_damping(options: dict[str, float], system: System, data: dict[str, Any], report: Report) -> None:
+    """cBot is per area D·l; a case has the damping of one node: the mean over the elements next to end a."""
+    cBot = options.get("damping", BED_DAMPING)
+    if cBot == 0:
+        return
+    areas = []
+    for chain in system.chains:
+        first = chain.links[0]
+        areas.append(system.kinds[first.type].diameter * first.length / first.segments)
+    mean = sum(areas) / len(areas)
+    data["environment"]["seabed"]["damping"] = _tidy(cBot * mean)
+    said = (
+        ""
+        if max(areas) - min(areas) < 1e-9 * mean
+        else f", mean of {cBot * min(areas):.4g} to {cBot * max(areas):.4g} over the lines"
+    )
+    report.assumed.append(
+        f"seabed damping {cBot * mean:.4g} N s/m at a node: cBot {cBot:g} Pa s/m on diameter × element length{said}"
+    )
+
+
+def _types(system: System) -> dict[str, Any]:
+    """MoorDyn's tangential drag acts on the surface πdl, ours on the diameter: factor π. The rest is the same."""
+    return {
+        _label(name): {
+            "diameter": kind.diameter, "mass": kind.mass, "EA": kind.EA, "EI": kind.EI,
+            "drag": {"normal": kind.Cdn, "tangential": math.pi * kind.Cdt},
+            "added_mass": {"normal": kind.Can, "tangential": kind.Cat},
+        }
+        for name, kind in system.kinds.items()
+    }  # fmt: skip
+
+
+def _label(name: str) -> str:
+    """A name as a case takes it."""
+    return re.sub(r"[^A-Za-z0-9 _.\-]", "_", name).lstrip(" _.-")[:60] or "type"
+
+
+def _lines(system: System, depth: float, vessel: Any, report: Report) -> dict[str, Any]:
+    """Lines and attachments; lines that are equal in everything become one with a multiplicity."""
+    place = _Placement(depth, vessel, report)
+    lines: dict[str, Any] = {}
+    attachments: list[dict[str, Any]] = []
+    seen: dict[str, str] = {}
+    for chain in system.chains:
+        name = f"line-{min(chain.links, key=lambda link: link.row.line).id}"
+        loads = _loads(chain)
+        spec = _line(chain, place)
+        key = json.dumps([spec, loads], sort_keys=True)
+        ids = "+".join(link.id for link in chain.links)
+        if key in seen:
+            lines[seen[key]]["multiplicity"] = lines[seen[key]].get("multiplicity", 1) + 1
+            report.read.append(f"line {ids}: the same as {seen[key]}, counted in its multiplicity")
+            continue
+        seen[key], lines[name] = name, spec
+        attachments.extend({"line": name, **load} for load in loads)
+        report.read.append(
+            f"line {ids} as {name}: {chain.length:g} m, {sum(link.segments for link in chain.links)} elements"
+        )
+    return {"lines": lines, "attachments": attachments}
+
+
+def _line(chain: Chain, place: _Placement) -> dict[str, Any]:
+    segments = [{"type": _label(link.type), "length": link.length, "elements": link.segments} for link in chain.links]
+    spec: dict[str, Any] = {"segments": segments, "end_a": place.end(chain.start), "end_b": place.end(chain.end)}
+    if math.dist(chain.start.xyz, chain.end.xyz) >= chain.length:
+        spec["allow_stretch"] = True
+    return spec
+
+
+def _loads(chain: Chain) -> list[dict[str, Any]]:
+    arc, found = 0.0, []
+    for link, joint in zip(chain.links[:-1], chain.joints, strict=True):
+        arc += link.length
+        if joint.is_loaded:
+            load = {"mass": joint.mass, "volume": joint.volume, "drag_area": joint.CdA, "added_mass": joint.Ca}
+            found.append({"arc_length": _tidy(arc), **load})
+    return found
+
+
+class _Placement:
+    """Points of the deck as ends of lines: vessel points from the deck's reference to the centre of gravity."""
+
+    def __init__(self, depth: float, vessel: Any, report: Report):
+        self.depth = depth
+        self.vessel = Vessel.model_validate(vessel) if vessel is not None else None
+        if self.vessel is not None:
+            report.assumed.append(
+                "vessel points are relative to (0, 0, 0) of the design position, at the mean water level"
+            )
+            if self.vessel.heading:
+                report.assumed.append(
+                    "the deck's axes are the earth's, and its points those of the vessel at its heading"
+                )
+
+    def end(self, point: Point) -> dict[str, Any]:
+        x, y, z = point.xyz
+        if point.kind == "fixed":
+            if abs(z + self.depth) <= 1e-6 * self.depth:
+                return {"anchor": {"point": [x, y]}}
+            return {"pinned": [x, y, z]}
+        if self.vessel is None:
+            return {
+                "fairlead": [
+                    f"{value:g} m minus {axis} of the CG" for value, axis in zip(point.xyz, "xyz", strict=True)
+                ]
+            }
+        c, s = math.cos(self.vessel.heading), math.sin(self.vessel.heading)
+        gx, gy, gz = self.vessel.centre_of_gravity
+        return {"fairlead": [_tidy(c * x + s * y - gx), _tidy(c * y - s * x - gy), _tidy(z - gz)]}
+
+
+def _template(report: Report) -> dict[str, Any]:
+    report.missing.extend(
+        [
+            "vessel.mass, vessel.centre_of_gravity, vessel.radii_of_gyration (or inertia): a deck does not know the vessel",
+            "vessel.hydrodynamics.data, or vessel.hydrostatics.stiffness in its place",
+            "the fairleads of the lines: relative to the centre of gravity, so subtract it from the deck's coordinates "
+            "(read the deck again with a case that has the vessel, and this is done for you)",
+        ]
+    )
+    return {
+        "mass": f"{FILL} (kg)", "centre_of_gravity": f"{FILL} ([x, y, z] from the deck's reference)",
+        "radii_of_gyration": f"{FILL} ([roll, pitch, yaw], m)", "hydrodynamics": {"data": f"{FILL} (a file or data set)"},
+    }  # fmt: skip
+
+
+def _tidy(value: float) -> float:
+    """A computed number to 12 digits: -14 + 1.7 is -12.3."""
+    return float(f"{value:.12g}")

@@ -1,0 +1,107 @@
+"""ETags, compression, request rates, metrics, logs, what happens when the database is away."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import logging
+from typing import Any
+
+import pytest
+import zstandard
+from sqlalchemy.exc import OperationalError
+
+from api.main import create_app
+from api.rates import Rates
+from store import logs
+from store.settings import Settings
+from tests.api.conftest import TestClient
+from tests.service.running import a_case
+
+
+def submit(client: TestClient, name: str = "a case") -> str:
+    return str(client.post("/api/v1/runs", json={"case": a_case(name)}).json()["id"])
+
+
+def test_an_answer_known_already_costs_no_bytes(client: TestClient) -> None:
+    address = f"/api/v1/runs/{submit(client)}"
+    first = client.get(address)
+    again = client.get(address, headers={"If-None-Match": first.headers["etag"]})
+    assert (again.status_code, again.content, again.headers["etag"]) == (304, b"", first.headers["etag"])
+    assert "no-cache" in again.headers["cache-control"]
+    client.post(f"{address}/cancel")
+    changed = client.get(address, headers={"If-None-Match": first.headers["etag"]})
+    assert (changed.status_code, changed.json()["state"]) == (200, "cancelled")
+    assert "etag" not in client.get("/api/v1/runs/none").headers
+
+
+@pytest.mark.parametrize(("coding", "unpack"), [("zstd", None), ("gzip", gzip.decompress)])
+def test_large_answers_are_compressed(client: TestClient, coding: str, unpack: Any) -> None:
+    plain = client.get("/api/v1/schema", headers={"Accept-Encoding": "identity"})
+    with client.stream("GET", "/api/v1/schema", headers={"Accept-Encoding": coding}) as answer:
+        assert answer.headers["content-encoding"] == coding
+        raw = b"".join(answer.iter_raw())
+    unpacked = zstandard.ZstdDecompressor().decompressobj().decompress(raw) if unpack is None else unpack(raw)
+    assert unpacked == plain.content
+    assert len(raw) < len(plain.content) / 3
+
+
+def test_one_caller_cannot_take_all(client: TestClient) -> None:
+    async def app(scope: Any, receive: Any, send: Any) -> None:
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+        await send({"type": "http.response.body", "body": b""})
+
+    inner = TestClient(Rates(app, per_minute=5))
+    answers = [inner.get("/") for _ in range(6)]
+    assert [answer.status_code for answer in answers] == [200] * 5 + [429]
+    assert 1 <= int(answers[-1].headers["retry-after"]) <= 61
+    assert answers[-1].headers["content-type"] == "application/problem+json"
+    assert TestClient(Rates(app, per_minute=0)).get("/").status_code == 200
+
+
+def test_metrics_tell_queues_runs_and_requests(client: TestClient) -> None:
+    submit(client)
+    client.get("/api/v1/runs/none")
+    text = client.get("/metrics").text
+    assert 'slowdrift_tasks_queued{priority="interactive",queue="runs"} 1.0' in text
+    assert 'slowdrift_runs{state="queued"} 1.0' in text
+    assert "slowdrift_database_up 1.0" in text
+    asked = 'slowdrift_request_seconds_count{method="GET",route="/api/v1/runs/{run_id}",status="404"}'
+    assert f"{asked} 1.0" in text
+
+
+def test_metrics_may_want_a_token(service_settings: Settings) -> None:
+    guarded = service_settings.model_copy(update={"metrics_token": "open sesame"})
+    with TestClient(create_app(guarded, reconcile=False), base_url="http://localhost") as client:
+        assert client.get("/metrics").status_code == 404
+        assert client.get("/metrics", headers={"Authorization": "Bearer wrong"}).status_code == 404
+        assert client.get("/metrics", headers={"Authorization": "Bearer open sesame"}).status_code == 200
+
+
+def test_a_database_that_is_away_is_said_so(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    from api.services import runs
+
+    def away(*_: Any) -> None:
+        raise OperationalError("INSERT", {}, Exception("database or disk is full"))
+
+    monkeypatch.setattr(runs, "start", away)
+    answer = client.post("/api/v1/runs", json={"case": a_case("unlucky")})
+    assert (answer.status_code, answer.json()["type"]) == (503, "unavailable")
+    assert "INSERT" not in answer.text
+
+
+def test_logs_name_their_run(capsys: pytest.CaptureFixture[str]) -> None:
+    root = logging.getLogger()
+    before, level = root.handlers[:], root.level
+    try:
+        for as_json in (True, False):
+            logs.configure("info", as_json)
+            with logs.about(run_id="r1", attempt=2):
+                logging.getLogger("slowdrift.test").info("said")
+        first, second = capsys.readouterr().err.strip().splitlines()[-2:]
+    finally:
+        root.handlers[:] = before
+        root.setLevel(level)
+    found = json.loads(first)
+    assert (found["message"], found["run_id"], found["attempt"], found["level"]) == ("said", "r1", 2, "INFO")
+    assert second.endswith("said run_id=r1 attempt=2")

@@ -1,0 +1,1 @@
+"""Faults as repeatable scripts: `python -m tests.service.faults --help` (docs/operations.md has the results)."""

@@ -51,7 +51,7 @@ def force(line, x, v, u, a, out):  # type: ignore[no-untyped-def]
             rel[p] += u[i, p] - v[i, p]
         for j in range(max(i - 1, 0), min(i + 1, n)):
             other = j if j < i else j + 1
-            wet, _, _ = wet_half(x[i, 2], x[other, 2], line.D[j], line.L[j])
+            wet, _, _ = wet_half(x[i, 2], x[other, 2], line.D[j])
             if wet == 0.0:
                 continue
             length = 0.0
@@ -119,7 +119,7 @@ def tangent(line, x, v, u, K, B):  # type: ignore[no-untyped-def]
             continue
         for j in range(max(i - 1, 0), min(i + 1, n)):
             other = j if j < i else j + 1
-            wet, own, far = wet_half(x[i, 2], x[other, 2], line.D[j], line.L[j])
+            wet, own, far = wet_half(x[i, 2], x[other, 2], line.D[j])
             if wet == 0.0 and own == 0.0:
                 continue
             for p in range(3):

@@ -16,7 +16,7 @@ def force(line, x, v, u, a, out):  # type: ignore[no-untyped-def]
     for i in range(n + 1):
         for j in range(max(i - 1, 0), min(i + 1, n)):
             other = j if j < i else j + 1
-            wet, _, _ = wet_half(x[i, 2], x[other, 2], line.D[j], line.L[j])
+            wet, _, _ = wet_half(x[i, 2], x[other, 2], line.D[j])
             for p in range(3):
                 t[p] = x[j + 1, p] - x[j, p]
             length = np.sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2])
@@ -49,7 +49,7 @@ def blocks(line, x):  # type: ignore[no-untyped-def]
             C[i, p, p] += point * (1.0 + line.point_ca[i])
         for j in range(max(i - 1, 0), min(i + 1, n)):
             other = j if j < i else j + 1
-            wet, _, _ = wet_half(x[i, 2], x[other, 2], line.D[j], line.L[j])
+            wet, _, _ = wet_half(x[i, 2], x[other, 2], line.D[j])
             for p in range(3):
                 t[p] = x[j + 1, p] - x[j, p]
             t /= np.sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2])

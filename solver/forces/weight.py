@@ -8,17 +8,16 @@ from ..kernels.line import HALF
 
 
 @njit(cache=True)
-def wet_half(z_node, z_other, D, L):  # type: ignore[no-untyped-def]
+def wet_half(z_node, z_other, D):  # type: ignore[no-untyped-def]
     """Wet share of the half element at a node, and its derivatives with the node's and the other node's height (L7).
 
-    D, L : diameter and unstretched length of the whole element [m].
+    D : its diameter [m], over which a piece that lies nearly flat goes under.
     """
     z_mid = 0.5 * (z_node + z_other)
     low, high = min(z_node, z_mid), max(z_node, z_mid)
-    steep = 2.0 * (high - low) / L
-    e, slope = 0.0, 0.0  # what the section reaches above and below its axis, and its change with high - low
-    if steep < 1.0:
-        e, slope = 0.5 * D * (1.0 - steep * steep), -2.0 * D * steep / L
+    e, slope = 0.0, 0.0  # what the section reaches beyond the ends of the axis, and its change with high - low
+    if high - low < D:
+        e, slope = 0.5 * (D - (high - low)), -0.5
     if high <= -e:
         return 1.0, 0.0, 0.0
     if low >= e:
@@ -42,8 +41,8 @@ def wet_point(z, radius):  # type: ignore[no-untyped-def]
 def force(line, x, v, u, a, out):  # type: ignore[no-untyped-def]
     """Add the vertical load of the half elements and of attachments (L6)."""
     for j in range(line.L.size):
-        wet1, _, _ = wet_half(x[j, 2], x[j + 1, 2], line.D[j], line.L[j])
-        wet2, _, _ = wet_half(x[j + 1, 2], x[j, 2], line.D[j], line.L[j])
+        wet1, _, _ = wet_half(x[j, 2], x[j + 1, 2], line.D[j])
+        wet2, _, _ = wet_half(x[j + 1, 2], x[j, 2], line.D[j])
         out[j, 2] += 0.5 * (wet1 * line.b_wet[j] - line.w_dry[j])
         out[j + 1, 2] += 0.5 * (wet2 * line.b_wet[j] - line.w_dry[j])
     for i in range(line.L.size + 1):
@@ -56,8 +55,8 @@ def tangent(line, x, v, u, K, B):  # type: ignore[no-untyped-def]
     for j in range(line.L.size):
         if max(x[j, 2], x[j + 1, 2]) <= -0.5 * line.D[j]:
             continue
-        _, own1, other1 = wet_half(x[j, 2], x[j + 1, 2], line.D[j], line.L[j])
-        _, own2, other2 = wet_half(x[j + 1, 2], x[j, 2], line.D[j], line.L[j])
+        _, own1, other1 = wet_half(x[j, 2], x[j + 1, 2], line.D[j])
+        _, own2, other2 = wet_half(x[j + 1, 2], x[j, 2], line.D[j])
         half = 0.5 * line.b_wet[j]
         i, k = 3 * j + 2, 3 * j + 5
         K[i, HALF] -= half * own1

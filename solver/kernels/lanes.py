@@ -215,16 +215,14 @@ def wet_shares(x, C, wet):  # type: ignore[no-untyped-def]
                 wet[j + 1, 0, q] = 1.0
         else:
             for q in range(Q):
-                one, other, D, L = x[j, 2, q], x[j + 1, 2, q], C[j, DIAMETER, q], C[j, EL, q]
-                wet[j, 1, q] = wet_half(one, other, D, L)
-                wet[j + 1, 0, q] = wet_half(other, one, D, L)
+                one, other, D = x[j, 2, q], x[j + 1, 2, q], C[j, DIAMETER, q]
+                wet[j, 1, q] = wet_half(one, other, D)
+                wet[j + 1, 0, q] = wet_half(other, one, D)
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
-def wet_half(node, other, D, L):  # type: ignore[no-untyped-def]
+def wet_half(node, other, D):  # type: ignore[no-untyped-def]
     """Wet share of the half element at a node, between its height and that of the middle (L7)."""
     rise = 0.5 * abs(other - node)
-    steep = min(2.0 * rise / L, 1.0)
-    e = 0.5 * D * (1.0 - steep * steep)
-    low = min(node, 0.5 * (node + other))
-    return min(max((e - low) / max(rise + 2.0 * e, 1e-12), 0.0), 1.0)
+    e = 0.5 * max(D - rise, 0.0)
+    return min(max((e - min(node, 0.5 * (node + other))) / max(rise + 2.0 * e, 1e-12), 0.0), 1.0)

@@ -45,9 +45,9 @@ def line_geometry(line: LineModel, x: Array) -> LineGeometry:
     wet = np.zeros((nodes, 2))
     for i in range(nodes):
         if i > 0:
-            wet[i, 0] = wet_half(x[i, 2], x[i - 1, 2], arrays.D[i - 1], arrays.L[i - 1])[0]
+            wet[i, 0] = wet_half(x[i, 2], x[i - 1, 2], arrays.D[i - 1])[0]
         if i < nodes - 1:
-            wet[i, 1] = wet_half(x[i, 2], x[i + 1, 2], arrays.D[i], arrays.L[i])[0]
+            wet[i, 1] = wet_half(x[i, 2], x[i + 1, 2], arrays.D[i])[0]
     bed = np.array([arrays.seabed[2] * contact(z - arrays.seabed[1], arrays.seabed[0])[1] for z in x[:, 2]])
     chord = x[-1] - x[0]
     flat = float(np.hypot(chord[0], chord[1]))

@@ -259,3 +259,18 @@ def test_angle_over_sine_is_a_series_good_to_75_degrees() -> None:
     angle = np.radians(np.linspace(0.1, 75.0, 200))
     found = np.array([lanes.over_sine(1.0 - np.cos(a)) for a in angle])
     np.testing.assert_allclose(found, angle / np.sin(angle), rtol=2e-8)
+
+
+def test_a_node_that_rises_from_the_deep_leaves_the_water() -> None:
+    """From any depth: its wet share is that of where it is."""
+    moving = Moving(_span(24), 1, 3)
+    deep = int(np.argmin(moving.x[1:-1, 2, 0])) + 1
+    assert moving.x[deep, 2, 0] < -60.0
+    moving.residual(moving.x, moving.v, moving.a)
+    assert np.all(moving.work.wet[deep] == 1.0)
+    moving.x[deep - 1 : deep + 2, 2] = 5.0
+    moving.residual(moving.x, moving.v, moving.a)
+    assert np.all(moving.work.wet[deep] == 0.0)
+    np.testing.assert_allclose(
+        moving.residual(moving.x, moving.v, moving.a)[..., 0], _reference(moving, 0), rtol=1e-9, atol=1e-3
+    )

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
 
 from solver.case import parse_case
 from solver.frequency_domain.solve import FrequencyResult, solve_frequency_domain
@@ -143,3 +145,41 @@ def test_the_storm_fpso_in_a_wave_of_four_centimetres() -> None:
     for k in range(4):
         tension = np.abs(linear.wave.tension[k][0, :, 0])
         np.testing.assert_allclose(np.abs(_phasor(record.tension[:, :, k, 0], out, omega)), tension, rtol=0.01)
+
+
+def test_free_decay_with_quadratic_damping_and_finite_fairleads_against_an_ode_solver(source: Source) -> None:
+    """A box on one taut, weightless line and springs, released far out in sway and yaw: scipy's DOP853 on six equations."""
+    data = _on_springs()
+    data["vessel"]["fairlead_kinematics"] = "finite"
+    data["vessel"]["damping"]["quadratic"] = {"surge": 3e5, "sway": 6e5, "yaw": 5e8}
+    data["lines"]["line-0"]["segments"][0] |= {"length": 200.0, "elements": 1}
+    data["line_types"]["chain"]["EA"] = 4e7
+    h, steps = 0.02, 2000
+    block = block_of(timed(data, step=h, build_up=0, duration=steps * h, output_step=h))
+    body, lines = block.setup.body, block.setup.lines
+    anchor, arrays = block.state.x[0, :, 0].copy(), block.run.static.lines[0].arrays
+    point, arm = body.point[:, 0].copy(), lines.arm[:, 0].copy()
+
+    def load(s: Array, v: Array) -> Array:
+        r = Rotation.from_rotvec(s[3:]).apply(arm)
+        d = anchor - (point + s[:3] + r - arm)
+        length = np.linalg.norm(d)
+        pull = arrays.EA[0] * (length / arrays.L[0] - 1) * d / length
+        pull[2] -= 0.5 * (arrays.w_dry[0] - arrays.b_wet[0])
+        line = 2 * np.concatenate([pull, np.cross(r, pull)])
+        return np.asarray(line + body.steady - body.K @ s - body.B @ v - body.quadratic * np.abs(v) * v)
+
+    inverse = np.linalg.inv(body.M)
+    start = np.array([0.0, 6.0, 0.0, 0.0, 0.0, 0.25])
+    block.state.s[0] = start
+    block.state.sa[0] = inverse @ load(start, np.zeros(6))
+    found = solve_ivp(
+        lambda _t, y: np.concatenate([y[6:], inverse @ load(y[:6], y[6:])]), (0, steps * h),
+        np.concatenate([start, np.zeros(6)]), "DOP853", rtol=1e-9, atol=1e-9, t_eval=h * np.arange(1, steps + 1),
+    )  # fmt: skip
+    block.go(steps)
+    gap = np.abs(block.out[0][:, 0] - found.y[:6].T).max(axis=0)
+    size = np.abs(found.y[:6]).max(axis=1)
+    assert size[0] > 0.05  # the turning arm pulls it along
+    for dofs in (slice(0, 3), slice(3, 6)):
+        assert gap[dofs].max() < 5e-3 * size[dofs].max()

@@ -38,8 +38,12 @@ def table(
                 role="region",
                 **hyphened(aria_label=caption or str(head[0])),
             ),
+            html.Button(
+                "Copy", type="button", className="sd-copy-table", **hyphened(aria_label=f"Copy table {caption}".strip())
+            ),
             *([dmc.Text(note, size="xs", c="dimmed", mt=4)] if note else []),
-        ]
+        ],
+        className="sd-table-box",
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import dash_mantine_components as dmc
@@ -45,9 +46,11 @@ def render(results: Results) -> list[Any]:
     offered = responses(results)
     response = results.option("response", offered) or ""
     seed = results.option("seed", seeds(results.summary))
-    channel = results.channels([offered[response]], points=POINTS, seed=seed)[offered[response]]
+    span = stretch(results.options)
+    view = {"from": span[0], "to": span[1]} if span else {}
+    channel = results.channels([offered[response]], points=POINTS, seed=seed, **view)[offered[response]]
     whole = f"{said(response)}, seed {seed}" if seed else said(response)
-    drawn = history(channel, said(response).split(",")[0])
+    drawn = history(channel, said(response).split(",")[0], span=span)
     card = picture(whole[0].upper() + whole[1:], drawn, f"{offered[response]}?{seed or ''}", NOTE, "history")
     controls = [pick_response([(key, said(key)) for key in offered], response)]
     controls += [pick_seed(seeds(results.summary), seed)] if seed else []
@@ -56,6 +59,15 @@ def render(results: Results) -> list[Any]:
         bar(*controls),
         dmc.Stack([card, *([extremes] if extremes else []), dmc.Text(told(results.summary), size="sm", c="dimmed")]),
     ]
+
+
+def stretch(options: dict[str, Any]) -> tuple[float, float] | None:
+    """The stretch of time that the address asks for; None for all of it, or for what is none."""
+    try:
+        low, high = float(options["from"]), float(options["to"])
+    except (KeyError, TypeError, ValueError):
+        return None
+    return (low, high) if math.isfinite(low) and math.isfinite(high) and low < high else None
 
 
 def told(summary: dict[str, Any]) -> str:

@@ -15,6 +15,7 @@ from frontend.components.tables import table
 from frontend.figures.base import axis_values, scaled
 from frontend.figures.history import history, seen
 from frontend.format import DOFS, MISSING, number, seconds
+from frontend.panels import extremes
 from frontend.results import Results
 
 POINTS = 2000
@@ -54,10 +55,17 @@ def render(results: Results) -> list[Any]:
     card = picture(whole[0].upper() + whole[1:], drawn, f"{offered[response]}?{seed or ''}", NOTE, "history")
     controls = [pick_response([(key, said(key)) for key in offered], response)]
     controls += [pick_seed(seeds(results.summary), seed)] if seed else []
-    extremes = extremes_table(results.summary["time_domain"])
+    table_of_extremes = extremes_table(results.summary["time_domain"])
     return [
         bar(*controls),
-        dmc.Stack([card, *([extremes] if extremes else []), dmc.Text(told(results.summary), size="sm", c="dimmed")]),
+        dmc.Stack(
+            [
+                card,
+                dmc.Text(told(results.summary), size="sm", c="dimmed"),
+                *([table_of_extremes] if table_of_extremes else []),
+                *extremes.render(results, response.removeprefix(LINE)),
+            ]
+        ),
     ]
 
 

@@ -42,9 +42,9 @@ that resonance in pitch (0.227 rad/s) is low-frequency.
 Tension is the axial force of the element at the fairlead, static part left out. "Same waves": the linearised system
 driven by the very waves of these seeds, so that no sampling noise is left between the domains.
 
-![Spectra of motion and of tension](validation/volturnus-spectra.png)
+![Spectra of motion and of tension](validation-volturnus/spectra.png)
 
-![Standard deviation of tension along two lines](validation/volturnus-tension.png)
+![Standard deviation of tension along two lines](validation-volturnus/tension.png)
 
 ## Where the domains differ, and why
 
@@ -60,14 +60,13 @@ file), replaced by the linear damping that is statistically equal to it in this 
   slow heave.
 - Wave-frequency tension of the head line, {head_gap:+.1f} %: drag on the line, {linear_head:+.1f} % with all of it
   and {thin_head:+.1f} % with a tenth, and the catenary's geometry, which stiffens where slow drift and waves pull the
-  line out together. At a tenth of the wave height the gap is {small_head:+.1f} %: the two domains have one linear
-  limit.
+  line out together. At a tenth of the wave height the gap is {small_head:+.1f} %.
 - Motions at wave frequencies agree within 1 % in every row, and the low-frequency pitch within 3 %.
 - At a tenth of the wave height first-order quantities have their linear limit; low-frequency ones need not reach it.
   Quadratic drag on hull and lines, and the lines' geometry, make difference-frequency forces of second order in the
   wave height, like the drift itself, and no linearisation has them: slow heave, beside its resonance at 0.31 rad/s,
-  agrees with linear hull damping (second row) and is {slow_heave:.0f} % low with quadratic damping in a small sea, where it is a
-  motion of millimetres.
+  agrees with linear hull damping (second row) and is {slow_heave:.0f} % low with quadratic
+  damping in a small sea, where it is a motion of millimetres.
 
 Rows three and four are of four seeds, so that their low-frequency tensions scatter by {scatter:.0f} %; motions are
 compared under the same waves. The last row has a build-up of two and a half hours, for so small a motion is hardly

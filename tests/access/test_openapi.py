@@ -56,6 +56,7 @@ def rows(world: World, tmp_path_factory: pytest.TempPathFactory) -> Rows:
     return made
 
 
+@pytest.mark.slow  # a minute altogether
 @pytest.mark.parametrize("route", ROUTES)
 def test_no_request_is_a_500(world: World, rows: Rows, description: Any, route: str) -> None:
     method, _, path = route.partition(" ")

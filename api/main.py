@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
-from fastapi import APIRouter, Depends, FastAPI
+from fastapi import APIRouter, Depends, FastAPI, Security
+from fastapi.security import APIKeyCookie, HTTPBearer
 from starlette.types import ASGIApp
 from starlette_compress import CompressMiddleware
 
@@ -20,7 +21,7 @@ from .attempts import Attempts
 from .context import Context
 from .doorkeeper import Doorkeeper
 from .etag import ETags
-from .guard import Guard
+from .guard import COOKIE, Guard
 from .metrics import Meter, Metrics
 from .rates import Rates
 from .routes import (
@@ -44,6 +45,11 @@ from .routes import (
 from .routes.common import problems
 
 BASE = "/api/v1"
+# for the OpenAPI description only: api/doorkeeper.py reads them
+BEARER = HTTPBearer(auto_error=False, scheme_name="key", description="an API key, sdk_…")
+SESSION = APIKeyCookie(
+    name=COOKIE, auto_error=False, scheme_name="session", description="of a browser, see /auth/sign-in"
+)
 
 
 class Guarded(FastAPI):
@@ -88,7 +94,8 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
     app.add_middleware(CompressMiddleware, minimum_size=2000, zstd_level=3, brotli=False, gzip_level=5)
     app.add_middleware(Rates, per_minute=settings.rate_per_minute)
     app.include_router(health.router)
-    base = APIRouter(prefix=BASE, responses=problems(400, 401, 403, 404, 413, 422), dependencies=[Depends(admit)])
+    doors = [Depends(admit), Security(BEARER), Security(SESSION)]
+    base = APIRouter(prefix=BASE, responses=problems(400, 401, 403, 404, 413, 422), dependencies=doors)
     for module in (
         auth,
         cases,

@@ -167,7 +167,9 @@ def main() -> None:
     for k, (hs, tp) in enumerate(SEAS):
         us, them = (statistics.median(run[k]["seconds"] for run in runs) for runs in (mine, other))
         shown = [
-            " ".join(f"{run['sigma'][dof]:.3f}" for dof in ("surge", "heave", "pitch"))
+            " ".join(
+                [*(f"{run['sigma'][dof]:.3f}" for dof in ("surge", "heave", "pitch")), f"{max(run['tension']):.1f}"]
+            )
             for run in (mine[0][k], other[0][k])
         ]
         print(f"{hs:>5g} m {tp:>3g} s {us:>13.3f} {them:>12.2f} {them / us:>6.1f}   {' | '.join(shown)}")

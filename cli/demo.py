@@ -27,6 +27,9 @@ def demo(options: argparse.Namespace) -> int:
         service = prepare(options)
     except RefusedError as error:
         return refuse(error)
+    if service.accounts:
+        service.supervisor.stop()
+        return refuse(RefusedError("people sign in here, and the demo has no account; give it a --data-dir of its own"))
     said: list[int] = []
     thread = threading.Thread(target=lambda: said.append(_tell(service)), daemon=True)
     thread.start()

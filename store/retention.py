@@ -6,22 +6,22 @@ from .database import Database
 from .repositories import IdempotencyRepository, QueueRepository
 from .scope import Scope
 
-BATCH = 50
+BATCH, MOST = 50, 1_000_000
 
 
 def sweep(database: Database, days: float, dry_run: bool = False, most: int | None = None) -> int:
     """Gives how many runs went, or would go."""
     if dry_run:
         with database.read() as session:
-            return len(QueueRepository(session).outdated(days, 1_000_000))
+            return len(QueueRepository(session).outdated(days, MOST))
+    with database.read() as session:
+        found = QueueRepository(session).outdated(days, most or MOST)
     gone = 0
-    while most is None or gone < most:
+    for start in range(0, len(found), BATCH):
         with database.write() as session:
-            queues = QueueRepository(session)
-            found = queues.outdated(days, BATCH)
-            gone += queues.remove(found)
-        if len(found) < BATCH:
-            break
+            gone += QueueRepository(session).remove(found[start : start + BATCH])
     with database.write() as session:
+        if gone:
+            QueueRepository(session).remove_empty_studies()
         IdempotencyRepository(session, Scope()).sweep()
     return gone

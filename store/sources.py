@@ -12,7 +12,7 @@ from solver.vessel.data import HydrodynamicData
 
 from .models import DataSet
 
-KEEP = 8
+KEEP, KEEP_BYTES = 8, 256 * 1024 * 1024
 _read: OrderedDict[str, HydrodynamicData] = OrderedDict()
 _lock = threading.Lock()
 
@@ -36,6 +36,6 @@ class PinnedSource:
         made = hydrodynamics.read_bytes(payload, filename)
         with _lock:
             _read[content_hash] = made
-            while len(_read) > KEEP:
+            while len(_read) > KEEP or (len(_read) > 1 and sum(data.nbytes for data in _read.values()) > KEEP_BYTES):
                 _read.popitem(last=False)
         return made

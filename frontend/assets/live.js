@@ -103,6 +103,7 @@
   /* --- run page ------------------------------------------------------------------------------------------------- */
   async function openRun(id) {
     close();
+    stretch = null;
     if (!id) return "off";
     window.slowdrift.expectPlotly(); // large: fetch it while the run is asked for, not after
     const on = (run) => set("run-page", "run-live", { data: run });
@@ -134,14 +135,30 @@
     ];
   }
 
-  /* The address holds what is on the screen, so that it can be sent to somebody. */
+  /* The address holds what is on the screen, so that it can be sent to somebody: tab, choices, the stretch of a history. */
+  let stretch = null; // {from, to} once somebody zoomed here, empty for all of it
+
   function address(tab, options) {
     const query = new URLSearchParams();
     if (tab && tab !== "overview") query.set("tab", tab);
-    Object.entries(options || {}).forEach(([name, value]) => query.set(name, value));
+    const { from, to, ...rest } = options || {};
+    Object.entries(rest).forEach(([name, value]) => query.set(name, value));
+    const shown = stretch || { from, to };
+    if (tab === "time") Object.entries(shown).forEach(([name, value]) => value !== undefined && query.set(name, value));
     const text = query.toString();
     window.history.replaceState(window.history.state, "", window.location.pathname + (text ? `?${text}` : ""));
     return text;
+  }
+
+  function zoomed(changes, tab, options) {
+    for (const change of changes || []) {
+      const range = change && (change["xaxis.range"] || (change["xaxis.range[0]"] !== undefined && [change["xaxis.range[0]"], change["xaxis.range[1]"]]));
+      if (range) stretch = { from: Number(range[0].toFixed(3)), to: Number(range[1].toFixed(3)) };
+      else if (change && change["xaxis.autorange"]) stretch = {};
+      else continue;
+      address(tab, options);
+    }
+    return "";
   }
 
   /* Every change of page: close a stream that belongs to another page. */
@@ -160,7 +177,7 @@
 
   window.dash_clientside = window.dash_clientside || {};
   window.dash_clientside.slowdrift = Object.assign(window.dash_clientside.slowdrift || {}, {
-    openRuns, openRun, paintRun, address, follow, navbar,
+    openRuns, openRun, paintRun, address, zoomed, follow, navbar,
   });
   window.addEventListener("pagehide", stop);
 })();

@@ -29,6 +29,46 @@
     return made;
   }
 
+  /* --- the picture as a file: Plotly has PNG, here are SVG and CSV ----------------------------------------------- */
+  const fileName = (gd) => ((gd._context.toImageButtonOptions || {}).filename || "slowdrift");
+
+  function save(name, text, type) {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([text], { type }));
+    link.download = name;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  }
+
+  /* A row per point: name of the curve, then its coordinates, with the axes' titles and units as heads. */
+  function csv(gd) {
+    const quote = (value) => (/[",\n]/.test(String(value ?? "")) ? `"${String(value).replace(/"/g, '""')}"` : String(value ?? ""));
+    const title = (trace, letter) => {
+      const place = trace.type.endsWith("3d") ? (gd._fullLayout[trace.scene || "scene"] || {})[`${letter}axis`]
+        : gd._fullLayout[(trace[`${letter}axis`] || letter).replace(letter, `${letter}axis`)];
+      return (((place || {}).title || {}).text || letter).replace(/<[^>]*>/g, "");
+    };
+    const rows = [];
+    let head = null;
+    for (const trace of gd._fullData) {
+      const letters = ["x", "y", "z"].filter((letter) => trace[letter] && trace[letter].length !== undefined);
+      if (!letters.length) continue;
+      const names = ["curve", ...letters.map((letter) => title(trace, letter))];
+      if (!head || head.join() !== names.join()) rows.push((head = names).map(quote).join(","));
+      const length = Math.max(...letters.map((letter) => trace[letter].length));
+      for (let i = 0; i < length; i += 1) rows.push([trace.name, ...letters.map((letter) => trace[letter][i])].map(quote).join(","));
+    }
+    return `${rows.join("\r\n")}\r\n`;
+  }
+
+  const ICONS = { svg: "M3 3h14v14H3z M6 13l3-4 2 2 3-5 2 7z", csv: "M3 3h14v14H3z M3 8h14 M3 12h14 M8 3v14" };
+  const icon = (path) => ({ width: 20, height: 20, path });
+  const buttons = () => [
+    { name: "svg", title: "Download plot as SVG", icon: icon(ICONS.svg), click: (gd) => window.Plotly.downloadImage(gd, { format: "svg", filename: fileName(gd), width: gd._fullLayout.width, height: gd._fullLayout.height }) },
+    { name: "csv", title: "Download the data as CSV", icon: icon(ICONS.csv), click: (gd) => save(`${fileName(gd)}.csv`, csv(gd), "text/csv") },
+  ];
+  const equipped = (config) => ({ ...config, modeBarButtonsToAdd: [...((config || {}).modeBarButtonsToAdd || []), ...buttons()] });
+
   const seen = (value) => (dark() ? twin(value) : value);
 
   function wrap(plotly) {
@@ -40,8 +80,8 @@
       const data = whole ? figure.data : figure;
       const frame = whole ? figure.layout : layout;
       sources.set(element, [data, frame]);
-      if (whole) return draw.call(plotly, target, { ...figure, data: seen(data), layout: seen(frame) });
-      return draw.call(plotly, target, seen(data), seen(frame), config);
+      if (whole) return draw.call(plotly, target, { ...figure, data: seen(data), layout: seen(frame), config: equipped(figure.config) });
+      return draw.call(plotly, target, seen(data), seen(frame), equipped(config));
     };
     plotly.react = through(react);
     plotly.newPlot = through(newPlot);
@@ -62,6 +102,22 @@
       window.Plotly.slowdrift.react.call(window.Plotly, element, seen(source[0]), seen(frame), element._context);
     }
   }
+
+  /* A table's text to the clipboard, tabs between, as a spreadsheet takes it. */
+  document.addEventListener("click", async (event) => {
+    const button = event.target.closest ? event.target.closest(".sd-copy-table") : null;
+    const table = button && button.parentElement.querySelector("table");
+    if (!table) return;
+    const cell = (one) => one.innerText.trim().replace(/[\u2009\u202f]/g, "").replace(/\u2212/g, "-");
+    const text = [...table.rows].map((row) => [...row.cells].map(cell).join("\t")).join("\n");
+    try {
+      await navigator.clipboard.writeText(text);
+      button.textContent = "Copied";
+    } catch (error) {
+      button.textContent = "Not copied";
+    }
+    setTimeout(() => (button.textContent = "Copy"), 1500);
+  });
 
   let held = wrap(window.Plotly);
   Object.defineProperty(window, "Plotly", { configurable: true, get: () => held, set: (value) => (held = wrap(value)) });

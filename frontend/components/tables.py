@@ -12,10 +12,16 @@ from frontend.components.attributes import hyphened
 
 
 def table(
-    caption: str, head: Sequence[Any], rows: Sequence[Sequence[Any]], min_width: int = 320, note: str | None = None
+    caption: str,
+    head: Sequence[Any],
+    rows: Sequence[Sequence[Any]],
+    min_width: int = 320,
+    note: str | None = None,
+    words: bool = False,
 ) -> dmc.Box:
-    """The first column is text, the others are numbers as text."""
-    align: list[dict[str, Any]] = [{}] + [{"ta": "right", "className": "sd-number"}] * (len(head) - 1)
+    """The first column is text, the others are numbers as text; with `words` all are text."""
+    other: dict[str, Any] = {} if words else {"ta": "right", "className": "sd-number"}
+    align: list[dict[str, Any]] = [{}] + [other] * (len(head) - 1)
     body = [dmc.TableTr([dmc.TableTd(cell, **a) for cell, a in zip(row, align, strict=True)]) for row in rows]
     return dmc.Box(
         [
@@ -38,8 +44,12 @@ def table(
                 role="region",
                 **hyphened(aria_label=caption or str(head[0])),
             ),
+            html.Button(
+                "Copy", type="button", className="sd-copy-table", **hyphened(aria_label=f"Copy table {caption}".strip())
+            ),
             *([dmc.Text(note, size="xs", c="dimmed", mt=4)] if note else []),
-        ]
+        ],
+        className="sd-table-box",
     )
 
 

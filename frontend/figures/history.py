@@ -11,12 +11,13 @@ TIME = "time after the build-up [s]"
 THIN = {"color": BLUE, "width": 1.1}
 
 
-def history(channel: dict[str, Any], name: str, height: int = 380) -> Figure:
-    """Zooming is along time only: the other axis follows what is seen."""
+def history(channel: dict[str, Any], name: str, height: int = 380, span: tuple[float, float] | None = None) -> Figure:
+    """Zooming is along time only: the other axis follows what is seen. `span`: the stretch to show at first [s]."""
     values, unit = scaled(channel)
     drawn = curve(axis_values(channel), values, name, BLUE, unit) | {"line": THIN}
+    seen_at_first = {"range": list(span)} if span else {"autorange": True, "rangemode": "tozero"}
     return figure(
-        [drawn], height, legend=False, xaxis=axis(TIME, autorange=True, rangemode="tozero"),
+        [drawn], height, legend=False, xaxis=axis(TIME, **seen_at_first),
         yaxis=axis(titled(name, unit), fixedrange=True), dragmode="zoom", hovermode="closest",
     )  # fmt: skip
 

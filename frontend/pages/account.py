@@ -151,7 +151,7 @@ def keys_part(keys: list[dict[str, Any]]) -> Any:
         align="flex-end",
     )
     head = ["Key", "begins", "may", "last used", "until", ""]
-    listed = table("", head, rows, min_width=720) if rows else dmc.Text("None yet.", size="sm", c="dimmed")
+    listed = table("", head, rows, min_width=720, words=True) if rows else dmc.Text("None yet.", size="sm", c="dimmed")
     return dmc.Stack([dmc.Title("Keys for programs", order=2, size="h4"), form, listed], gap="xs")
 
 
@@ -180,7 +180,7 @@ def shared(shares: list[dict[str, Any]]) -> Any:
          _until(item), _revoke("shares", item)]
         for item in shares
     ]  # fmt: skip
-    listed = table("", ["Link", "runs", "made", "until", ""], rows, min_width=560) if rows else dmc.Text(
+    listed = table("", ["Link", "runs", "made", "until", ""], rows, min_width=560, words=True) if rows else dmc.Text(
         "None yet. “Share” on a run's page makes one.", size="sm", c="dimmed"
     )  # fmt: skip
     return dmc.Stack([dmc.Title("Shared links", order=2, size="h4"), listed], gap="xs")

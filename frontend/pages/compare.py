@@ -181,7 +181,7 @@ def legend(several: list[Results], names: list[str]) -> Any:
          ", ".join(results.run.get("analyses") or []).replace("_", " ")]
         for name, results in zip(names, several, strict=True)
     ]  # fmt: skip
-    return table("", ["Run", "created", "analyses"], body, min_width=520)
+    return table("", ["Run", "created", "analyses"], body, min_width=520, words=True)
 
 
 def changed(several: list[Results], names: list[str]) -> Any:

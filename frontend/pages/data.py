@@ -135,4 +135,4 @@ def listed(items: list[dict[str, Any]]) -> Any:
         )  # fmt: skip
     head = ["Data", "frequencies [rad/s]", "headings", "drift", "warnings", "created"]
     note = f"The newest {PAGE}." if len(items) == PAGE else None
-    return table("", head, rows, min_width=820, note=note)
+    return table("", head, rows, min_width=820, note=note, words=True)

@@ -18,7 +18,7 @@ from frontend.panels import history
 from frontend.results import Results
 from frontend.theme import FINAL
 
-OPTIONS = ("line", "scale", "response", "seed", "motion")
+OPTIONS = ("line", "scale", "response", "seed", "motion", "from", "to")
 
 
 def layout(run_id: str = "", tab: str = "overview", **query: Any) -> Any:
@@ -109,6 +109,14 @@ def register(app: Dash) -> None:
     )(choose)
     history.register(app)
     run_head.register_sharing(app, "run")
+    app.clientside_callback(
+        live("slowdrift", "zoomed"),
+        Output("run-page", "data-zoom"),
+        Input({"type": "history", "name": ALL}, "relayoutData"),
+        State("run-tabs", "value"),
+        State("run-options", "data"),
+        prevent_initial_call=True,
+    )
     app.callback(
         Output("notices", "sendNotifications", allow_duplicate=True),
         Input("run-cancel", "n_clicks"),

@@ -8,7 +8,6 @@ import dash_mantine_components as dmc
 from dash import ClientsideFunction, Dash, Input, Output, State, dcc, html
 
 from frontend.client import attempt, client
-from frontend.components.attributes import hyphened
 from frontend.components.messages import refusal
 from frontend.format import moment
 

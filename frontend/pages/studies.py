@@ -113,7 +113,7 @@ def show(_page: str, _tick: int | None) -> Any:
     ]  # fmt: skip
     head = ["Study", "runs", "state", "done", "time left", "varies", "created"]
     note = f"The newest {PAGE}." if page.get("next_cursor") else None
-    return table("", head, rows, min_width=860, note=note)
+    return table("", head, rows, min_width=860, note=note, words=True)
 
 
 def left(item: dict[str, Any]) -> str:

@@ -124,7 +124,7 @@ def members(items: list[dict[str, Any]], owner: bool) -> Any:
         out = _remove("members", item["user_id"], "Remove") if owner else ""
         rows.append([item["name"] + (" (disabled)" if item["disabled"] else ""), item["email"], role, out])
     known = dcc.Store(id="team-roles", data={item["user_id"]: item["role"] for item in items})
-    return html.Div([known, table("Members", ["Name", "e-mail", "role", ""], rows, min_width=520)])
+    return html.Div([known, table("Members", ["Name", "e-mail", "role", ""], rows, min_width=520, words=True)])
 
 
 def _remove(what: str, key: str, words: str) -> dmc.Button:
@@ -139,7 +139,7 @@ def projects(homes: list[dict[str, Any]], owner: bool) -> Any:
         [dmc.TextInput(id="project-new", placeholder="name", w=220, **{"aria-label": "New project"}),
          dmc.Button("Make a project", id="project-make", variant="default")]
     )  # fmt: skip
-    return dmc.Stack([table("Projects", ["Project", ""], rows), *([form] if owner else [])], gap="xs")
+    return dmc.Stack([table("Projects", ["Project", ""], rows, words=True), *([form] if owner else [])], gap="xs")
 
 
 def invitations(items: list[dict[str, Any]]) -> Any:
@@ -153,7 +153,7 @@ def invitations(items: list[dict[str, Any]]) -> Any:
          dmc.Button("Make a link", id="team-invite", size="xs")],
         align="flex-end",
     )  # fmt: skip
-    listed = [table("", ["Role", "for", "until", ""], rows, min_width=480)] if rows else []
+    listed = [table("", ["Role", "for", "until", ""], rows, min_width=480, words=True)] if rows else []
     return dmc.Stack([dmc.Title("Invitations", order=4), form, *listed], gap="xs")
 
 
@@ -167,7 +167,9 @@ def audit(items: list[dict[str, Any]]) -> Any:
         ]
         for item in items
     ]
-    return table("Who did what", ["When", "who", "what", "of"], rows, min_width=760, note=f"The newest {AUDIT}.")
+    return table(
+        "Who did what", ["When", "who", "what", "of"], rows, min_width=760, note=f"The newest {AUDIT}.", words=True
+    )
 
 
 def make(clicks: int | None, name: str | None, changed: int) -> tuple[Any, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import dash_mantine_components as dmc
@@ -14,6 +15,7 @@ from frontend.components.tables import table
 from frontend.figures.base import axis_values, scaled
 from frontend.figures.history import history, seen
 from frontend.format import DOFS, MISSING, number, seconds
+from frontend.panels import extremes
 from frontend.results import Results
 
 POINTS = 2000
@@ -45,17 +47,35 @@ def render(results: Results) -> list[Any]:
     offered = responses(results)
     response = results.option("response", offered) or ""
     seed = results.option("seed", seeds(results.summary))
-    channel = results.channels([offered[response]], points=POINTS, seed=seed)[offered[response]]
+    span = stretch(results.options)
+    view = {"from": span[0], "to": span[1]} if span else {}
+    channel = results.channels([offered[response]], points=POINTS, seed=seed, **view)[offered[response]]
     whole = f"{said(response)}, seed {seed}" if seed else said(response)
-    drawn = history(channel, said(response).split(",")[0])
+    drawn = history(channel, said(response).split(",")[0], span=span)
     card = picture(whole[0].upper() + whole[1:], drawn, f"{offered[response]}?{seed or ''}", NOTE, "history")
     controls = [pick_response([(key, said(key)) for key in offered], response)]
     controls += [pick_seed(seeds(results.summary), seed)] if seed else []
-    extremes = extremes_table(results.summary["time_domain"])
+    table_of_extremes = extremes_table(results.summary["time_domain"])
     return [
         bar(*controls),
-        dmc.Stack([card, *([extremes] if extremes else []), dmc.Text(told(results.summary), size="sm", c="dimmed")]),
+        dmc.Stack(
+            [
+                card,
+                dmc.Text(told(results.summary), size="sm", c="dimmed"),
+                *([table_of_extremes] if table_of_extremes else []),
+                *extremes.render(results, response.removeprefix(LINE)),
+            ]
+        ),
     ]
+
+
+def stretch(options: dict[str, Any]) -> tuple[float, float] | None:
+    """The stretch of time that the address asks for; None for all of it, or for what is none."""
+    try:
+        low, high = float(options["from"]), float(options["to"])
+    except (KeyError, TypeError, ValueError):
+        return None
+    return (low, high) if math.isfinite(low) and math.isfinite(high) and low < high else None
 
 
 def told(summary: dict[str, Any]) -> str:

@@ -16,6 +16,7 @@ from .spec import MAX_PANELS, HydrodynamicJob
 from .symmetry import symmetry_planes
 
 Array = np.ndarray
+LEAST_VOLUME = 1e-6  # of the box around the hull
 TINY = 1e-9  # of the mean area: smaller panels are no panels
 
 
@@ -87,6 +88,12 @@ def wetted(mesh: Panels, kind: str, scale: float, move: Array, name: str) -> Hul
     panels = welded(solid)
     if not 0 < panels.count <= MAX_PANELS:
         raise DataError(f"{name}: {panels.count} panels below the water; allowed: 1 to {MAX_PANELS}")
+    box = float(np.prod(np.ptp(panels.vertices, axis=0)))
+    if not abs(panels.volume) > LEAST_VOLUME * box or box == 0:
+        raise DataError(
+            f"{name}: the mesh encloses {panels.volume:.3g} m3 below the water, in a box of {box:.3g} m3; give a hull that is "
+            "closed but for the still water"
+        )
     turned = panels.volume < 0
     doubles, tiny = below.count - single.count, single.count - solid.count
     return Hull(panels.flipped() if turned else panels, kind, None, flat, doubles, tiny, turned)

@@ -68,7 +68,10 @@ def wet(job: HydrodynamicJob, hull: Hull) -> Wet:
     water, start = job.water, 0.0
     if lid is not None:
         areas = component_areas(welded(Fundamental(lid, part.planes).whole()))
-        start = LID_START * irregular_frequency(float(areas.max()), hull.draught, water.gravity)
+        if areas.size == 0:  # slivers that collapse when they are welded
+            lid = None
+        else:
+            start = LID_START * irregular_frequency(float(areas.max()), hull.draught, water.gravity)
     return Wet(part.part, lid, part.planes, centre, water.depth_m, water.density, water.gravity, start)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import Delaunay
+from scipy.spatial import Delaunay, QhullError
 
 from .panels import Panels
 from .symmetry import AXES
@@ -29,7 +29,10 @@ def lid_panels(water_line: Array, size: float, planes: tuple[str, ...]) -> Panel
     points[:, axes] = np.where(np.abs(points[:, axes]) <= 2 * tiny, 0.0, points[:, axes])
     if points.shape[0] < 3:
         return None
-    triangles = Delaunay(points).simplices
+    try:
+        triangles = Delaunay(points).simplices
+    except QhullError:  # all on one line: there is no plane to fill
+        return None
     a, b, c = (points[triangles[:, i]] for i in range(3))
     area = 0.5 * ((b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0]))
     inside = contains(segments, (a + b + c) / 3)

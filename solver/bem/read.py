@@ -42,7 +42,10 @@ def read_mesh(payload: bytes, filename: str) -> tuple[Panels, str]:
     used = mesh.vertices[np.unique(mesh.faces)]
     if not np.all(np.isfinite(used)) or np.abs(used).max() > COORDINATE:
         raise DataError(f"{name}: a corner lies at {np.abs(used).max():g}; allowed: finite, within {COORDINATE:g} m")
-    return welded(mesh), kind
+    made = welded(mesh)
+    if made.count == 0:
+        raise DataError(f"{name}: all {mesh.count} panels collapse: their corners lie on points or lines")
+    return made, kind
 
 
 def _kind(payload: bytes, name: str) -> tuple[str, Callable[[bytes, str], Panels]]:
@@ -155,4 +158,6 @@ def _read_ascii_stl(payload: bytes, name: str) -> Panels:
         ended = key == "endsolid"
     if not ended:
         raise lines.fault("the file ends without endsolid; it is truncated, write it again")
+    if len(corners) % 3:
+        raise lines.fault(f"{len(corners)} vertices are no whole number of triangles; an endfacet is missing")
     return _triangles(np.array(corners).reshape(-1, 3, 3))

@@ -13,6 +13,9 @@ from ..arrays import ChannelInfo, Encoded, decode, encode
 from ..errors import NotFoundError
 from ..models import ChannelRow
 
+TOGETHER = 8_000_000
+"""Bytes of values inserted at once: a long list of blobs is never held whole."""
+
 
 class ChannelRepository:
     """Its callers hold a run of their own scope already: channels are reached through their run only."""
@@ -21,6 +24,8 @@ class ChannelRepository:
         self.session = session
 
     def put(self, run_id: str, channels: Iterable[Channel]) -> None:
+        held: list[ChannelRow] = []
+        size = 0
         for number, channel in enumerate(channels):
             made = encode(channel)
             row = ChannelRow(
@@ -36,9 +41,18 @@ class ChannelRepository:
                 payload=made.payload,
                 axes_payload=made.axes_payload,
             )
-            self.session.add(row)
-            self.session.flush()
-            self.session.expunge(row)  # so that a long list of blobs is never held at once
+            held.append(row)
+            size += len(made.payload)
+            if size > TOGETHER:
+                self._insert(held)
+                held, size = [], 0
+        self._insert(held)
+
+    def _insert(self, rows: list[ChannelRow]) -> None:
+        self.session.add_all(rows)
+        self.session.flush()
+        for row in rows:
+            self.session.expunge(row)
 
     def names(self, run_id: str) -> list[ChannelInfo]:
         rows = self.session.scalars(select(ChannelRow).where(ChannelRow.run_id == run_id).order_by(ChannelRow.number))

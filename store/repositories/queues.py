@@ -98,8 +98,11 @@ class QueueRepository:
         return self.session.scalars(query.order_by(Run.finished_at).limit(limit)).all()
 
     def remove(self, run_ids: Sequence[str]) -> int:
-        """These runs, unless they were pinned meanwhile, and studies that have none left; gives how many went."""
+        """These runs, unless they were pinned meanwhile; gives how many went."""
         gone = self.session.execute(delete(Run).where(Run.id.in_(run_ids), Run.pinned.is_(False)))
-        held = select(Run.study_id).where(Run.study_id.is_not(None))
-        self.session.execute(delete(Study).where(Study.id.not_in(held)))
         return int(gone.rowcount)  # type: ignore[attr-defined]
+
+    def remove_empty_studies(self) -> None:
+        """Those that have no run left."""
+        held = select(Run.id).where(Run.study_id == Study.id).exists()
+        self.session.execute(delete(Study).where(~held).execution_options(synchronize_session=False))

@@ -198,7 +198,8 @@ class RunRepository(Scoped):
         sums = {row.run_id: row for row in self.session.execute(_totals(clock(self.session), [run.id for run in runs]))}
         active = any(run.state in ACTIVE for run in runs)
         queue = snapshot(self.session) if active else Snapshot()
-        people = {run.created_by for run in runs} - {None}
+        shown = self.scope.run_ids is None  # behind a share link nobody is named
+        people = {run.created_by for run in runs if shown} - {None}
         rows = self.session.execute(select(User.id, User.name).where(User.id.in_(people))) if people else ()
         names = {row.id: row.name for row in rows}
         return [_view(run, sums.get(run.id), queue, names) for run in runs]

@@ -158,8 +158,8 @@ class TeamRepository:
         """One that is still good, locked: it works once."""
         good = (Invitation.digest == digest) & Invitation.used_at.is_(None) & (Invitation.expires_at > utc_now())
         found = self.session.scalars(select(Invitation).where(good).with_for_update()).one_or_none()
-        if found is None:
-            raise NotFoundError("invitation", "")
+        if found is None or (found.is_admin and self.session.scalar(select(User.id).limit(1)) is not None):
+            raise NotFoundError("invitation", "")  # the first administrator's is over once there is an account
         return found
 
     def use(self, invitation: Invitation, user_id: str) -> None:

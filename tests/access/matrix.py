@@ -369,6 +369,7 @@ MATRIX: dict[str, Line] = {
     "DELETE /api/v1/runs/{run_id}": Line("edit row", 204, "/api/v1/runs/{new_final_run}"),
     "POST /api/v1/imports/run": Line("edit", 201, sent=a_bundle),
     # studies
+    "GET /api/v1/queue": Line("read", 200),  # in numbers only
     "POST /api/v1/studies": Line("edit", 202, sent=lambda r: {"json": r.study_request}),
     "GET /api/v1/studies": Line("read", 200),
     "GET /api/v1/studies/{study_id}": Line("read row", 200, STUDY),

@@ -11,7 +11,7 @@ from sqlalchemy import select, update
 from store.clock import utc_now
 from store.models import DEFAULT_TEAM
 from store.people import ApiKey, Audit, Invitation, Share
-from store.tokens import digest
+from store.tokens import INVITATION, digest, new_token
 from tests.access.conftest import ORIGIN, PASSWORD, World
 from tests.service.running import a_case
 
@@ -96,6 +96,15 @@ def test_a_member_of_two_teams(fresh: World) -> None:
     assert both.patch("/api/v1/me", json={"project_id": "f" * 32}).status_code == 404
 
 
+def test_the_first_administrators_link_is_over_with_the_first_account(world: World) -> None:
+    token = new_token(INVITATION)
+    with world.database.write() as session:
+        row = Invitation(team_id=DEFAULT_TEAM, role="owner", is_admin=True, digest=digest(token, world.secret))
+        row.expires_at = utc_now() + timedelta(days=1)
+        session.add(row)
+    assert accept(world, token, GUEST | {"email": "late@x.org"}).status_code == 404
+
+
 def test_roles_and_the_last_owner(fresh: World) -> None:
     owner, ids = fresh.signed_in("owner"), fresh.ids
     me = f"{TEAM}/members/{ids['owner']}"
@@ -177,6 +186,8 @@ def test_a_link_shows_its_runs_and_nothing_else(world: World) -> None:
     anyone, base = world.client(), f"/api/v1/shared/{made['token']}"
     opened = anyone.get(base).json()
     assert ([run["id"] for run in opened["runs"]], opened["view"]) == (asked["run_ids"], {"tab": "spectra"})
+    assert {run["created_by"] for run in opened["runs"]} == {None}  # who works here is nobody else's business
+    assert editor.get(f"/api/v1/runs/{shown['id']}").json()["created_by"] == "Editor"
     for run, status in ((shown, 200), (also, 200), (hidden, 404)):
         for part in ("", "/summary", "/channels", "/channels/frequency/vessel/surge", "/case"):
             assert anyone.get(f"{base}/runs/{run['id']}{part}").status_code == status, (run["case_name"], part)

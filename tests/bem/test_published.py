@@ -71,8 +71,8 @@ def test_hemisphere_converges_with_the_square_of_the_panel_size() -> None:
 
 
 def havelock(ka: float) -> float:
-    """Mean force on a fixed vertical cylinder in deep water over ρ g a² R: 2 over π² (ka)³ times the sum over m."""
-    m = np.arange(60)
+    """Mean force on a fixed vertical cylinder in deep water over ρ g a² R: 4 over π² (ka)³ times the sum over m."""
+    m = np.arange(35)
     orders = [np.abs(h1vp(order, ka)) ** 2 for order in (m, m + 1)]
     terms = (1 - m * (m + 1) / ka**2) ** 2 / (orders[0] * orders[1])
     return float(4 / (math.pi**2 * ka**3) * np.nansum(terms))

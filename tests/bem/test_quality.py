@@ -10,6 +10,7 @@ import pytest
 from solver.bem import Hull, HydrodynamicJob, parse_job, prepare
 from solver.bem.panels import Panels, joined, welded
 from solver.bem.quality import doubts, edges_of, measures, preview
+from solver.outcome import DataError
 
 from .shapes import as_gdf, box, hemisphere
 
@@ -125,3 +126,9 @@ def test_a_preview_is_bounded_and_whole_when_it_can_be() -> None:
     assert max(map(max, shown["faces"])) == len(shown["vertices"]) - 1
     few = preview(hull, most=100)
     assert (few["panels"], few["shown"]) == (256, 100)
+
+
+def test_a_mesh_that_encloses_nothing_is_refused() -> None:
+    bottom = box().chosen(np.isclose(box().normals[:, 2], -1))
+    with pytest.raises(DataError, match="encloses"):
+        looked(bottom)

@@ -75,6 +75,7 @@ GDF, NEMOH, MSH = as_gdf(box(size=1.0)).decode(), as_nemoh(box(size=1.0)).decode
         ("solid a\nfacet normal 0 0 1\nvertex 0 0\n", "line 3: expected x, y, z of a vertex: 3 numbers; got 2"),
         ("solid a\nfacet\nvertex 0 0 0\nendfacet\n", "line 4: a facet ends with 1 vertices; expected 3"),
         ("solid a\nfacet\nvertex 0 0 0\nvertex 0 0 0\nvertex 1 0 0\nendfacet\n", "without endsolid"),
+        ("solid a\nvertex 0 0 0\nendsolid\n", "line 3: 1 vertices are no whole number of triangles"),
         ("solid a\nfrobnicate\n", "line 2: 'frobnicate' is no word of an STL"),
         (MSH.replace("2.2 0 8", "2.2 1 8"), "line 2: a binary MSH is not read"),
         (MSH.replace("2.2 0 8", "3.0 0 8"), "line 2: MSH version '3.0'"),
@@ -83,6 +84,7 @@ GDF, NEMOH, MSH = as_gdf(box(size=1.0)).decode(), as_nemoh(box(size=1.0)).decode
         (MSH.replace("$EndNodes", "8 0 0 0\n$EndNodes"), "expected $EndNodes"),
         (MSH.split("$Elements")[0], "holds no panels"),
         ("hull\n1 9.8\n0 0\n1\n0 0 0 1 0 0 1 1 1e300 0 1 0\n", "a corner lies at 1e+300"),
+        ("hull\n1 9.8\n0 0\n1\n0 0 0 1 0 0 1 0 0 0 0 0\n", "all 1 panels collapse"),
     ],
 )  # fmt: skip
 def test_a_fault_says_where_and_what(text: str, words: str) -> None:

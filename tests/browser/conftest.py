@@ -60,7 +60,11 @@ class Watch:
     def _said(message: object) -> bool:
         """The browser itself reports a refused check or preview: the page shows it at the field."""
         url = str(message.location.get("url", ""))  # type: ignore[attr-defined]
-        return "status of 422" in message.text and url.endswith(("/cases/check", "/preview"))  # type: ignore[attr-defined]
+        text = message.text  # type: ignore[attr-defined]
+        refused = "status of 422" in text and url.endswith(("/cases/check", "/preview"))
+        return refused or (
+            "status of 50" in text and url.endswith("/preview")
+        )  # a worker that starts: the page asks again
 
     def _request(self, request: object) -> None:
         url: str = request.url  # type: ignore[attr-defined]

@@ -102,6 +102,33 @@ def test_a_history_shows_more_where_one_looks_closer(wide: Watch) -> None:
     assert page.evaluate(SHOWN)[1:] == whole
 
 
+def test_a_zoom_is_in_the_address_and_a_picture_becomes_a_file(wide: Watch) -> None:
+    page = wide.page
+    steps.choose_example(page, FPSO)
+    run_id = steps.start(page)
+    steps.expect_done(page)
+    page.goto(f"/app/runs/{run_id}?tab=time&response=surge&seed=1&from=100&to=260")
+    expect(page.get_by_role("heading", name="Surge, seed 1")).to_be_visible(timeout=steps.PATIENT)
+    steps.expect_drawn(page, pictures=1, curves=1)
+    _, start, end = page.evaluate(SHOWN)
+    assert start >= 100
+    assert end <= 260
+    expect(page.locator(".dash-graph--pending")).to_have_count(0, timeout=steps.PATIENT)
+    page.evaluate(
+        "window.Plotly.relayout(document.querySelector('.js-plotly-plot'), {'xaxis.range[0]': 120, 'xaxis.range[1]': 200})"
+    )
+    expect(page).to_have_url(re.compile(r"from=120&to=200"))
+    for kind in ("svg", "csv"):
+        with page.expect_download() as saved:
+            page.locator(f".modebar-btn[data-title*='{kind.upper()}']").first.dispatch_event("click")
+        assert saved.value.suggested_filename.endswith(kind)
+        text = saved.value.path().read_bytes().decode()
+        assert ("<svg" in text) if kind == "svg" else text.startswith("curve,time after the build-up [s],surge [m]\r\n")
+    rows = text.strip().split("\r\n")[1:]
+    assert len(rows) > 20
+    assert all(len(row.split(",")) == 3 for row in rows)
+
+
 def test_the_list_is_live_and_cancels_and_deletes(wide: Watch) -> None:
     page = wide.page
     steps.choose_example(page, RISER)

@@ -162,6 +162,10 @@ def _cases(app: FastAPI, fake: FakeService) -> None:
         ends = {"end_a": {"tension": 5e5}, "end_b": {"tension": 9e5}, "grounded_length": 60.0}
         return {"statics": {"converged": True, "lines": dict.fromkeys(lines, ends)}, "lines": lines, "warnings": []}
 
+    @app.get("/api/v1/auth")
+    def auth() -> Any:
+        return {"accounts": False, "signed_in": False}
+
     @app.get("/healthz")
     def healthz() -> Any:
         return {"ok": True}

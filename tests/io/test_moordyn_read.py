@@ -239,6 +239,29 @@ def test_bytes_of_any_kind_never_break_the_reader(payload: bytes | str) -> None:
         read_deck(payload)
 
 
+def test_decks_of_windows_and_counts_of_the_oldest_format_are_read() -> None:
+    counted = DECK.replace("Name  Diam", "2  NTypes - number of line types\nName  Diam").replace(
+        "ID LineType", "2 NLines - lines\nID LineType"
+    )
+    assert counted != DECK
+    assert read_deck(counted.replace("\n", "\r\n").encode("latin-1"), VESSEL).case == read_deck(DECK, VESSEL).case
+
+
+def test_names_that_a_case_cannot_take_stay_apart() -> None:
+    text = (
+        DECK.replace("\nmain ", "\na/b ")
+        .replace("\nrope ", "\na:b ")
+        .replace(" main ", " a/b ")
+        .replace(" rope ", " a:b ")
+    )
+    case, plain = read_deck(text, VESSEL).case, read_deck(DECK, VESSEL).case
+    assert case is not None
+    assert plain is not None
+    assert list(case.line_types) == ["a_b", "a_b-2"]
+    assert list(case.line_types.values()) == list(plain.line_types.values())
+    assert [piece.type for piece in case.lines["line-1"].segments] == ["a_b", "a_b-2"]
+
+
 def test_control_characters_of_a_deck_do_not_reach_the_text_of_the_case() -> None:
     text = DECK.replace("a semi", "a\x1b\x07 semi").replace("0.001 dtM", "1 \x1bfoo - x\n2 ba\x85r - y\n0.001 dtM")
     found = read_deck(text, VESSEL)

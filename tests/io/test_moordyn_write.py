@@ -151,6 +151,15 @@ def test_prescribed_motion_is_left_to_the_driver() -> None:
     assert any("motion" in text for text in written.report.dropped)
 
 
+def test_names_with_blanks_stay_apart() -> None:
+    text = read_deck(DECK, VESSEL).yaml.replace("main", "a b").replace("rope", "a_b")
+    case = load_case(text)
+    again = read_deck(write_deck(case).text, VESSEL).case
+    assert again is not None
+    assert list(again.line_types) == ["a_b-2", "a_b"]
+    assert list(again.line_types.values()) == list(case.line_types.values())
+
+
 def test_radius_and_azimuth_need_no_statics() -> None:
     data = yaml.safe_load(read_deck(DECK, VESSEL).yaml)
     data["lines"]["line-1"]["end_a"] = {"anchor": {"azimuth": "150 deg", "radius": 700}}

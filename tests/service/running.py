@@ -8,6 +8,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -25,8 +26,17 @@ def command(*arguments: str) -> list[str]:
     return [sys.executable, "-P", "-m", "cli.main", *arguments]
 
 
+TABLES = Path(tempfile.gettempdir()) / "slowdrift-tests-capytaine"
+"""The Green function's tables, which every worker of hydrodynamic jobs would make anew in its data folder."""
+
+
 def environment(settings: Settings) -> dict[str, str]:
-    return os.environ | settings.as_env() | {"PYTHONPATH": os.environ.get("SD_TEST_PATH", str(ROOT))}
+    return (
+        os.environ
+        | settings.as_env()
+        | {"CAPYTAINE_CACHE_DIR": str(TABLES)}
+        | {"PYTHONPATH": os.environ.get("SD_TEST_PATH", str(ROOT))}
+    )
 
 
 def start(settings: Settings, *arguments: str) -> subprocess.Popen[str]:

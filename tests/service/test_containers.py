@@ -17,7 +17,7 @@ COMPOSE: dict[str, Any] = yaml.safe_load((ROOT / "docker-compose.yml").read_text
 
 def test_services() -> None:
     services = COMPOSE["services"]
-    assert set(services) == {"api", "worker", "interactive", "postgres", "redis"}
+    assert set(services) == {"api", "worker", "interactive", "hydrodynamics", "postgres", "redis"}
     for name, service in services.items():
         assert service["healthcheck"]["test"], name
         assert service.get("image"), name
@@ -27,12 +27,12 @@ def test_services() -> None:
 
 
 def test_variables_are_settings() -> None:
-    for service in ("api", "worker", "interactive"):
+    for service in ("api", "worker", "interactive", "hydrodynamics"):
         for name in COMPOSE["services"][service]["environment"]:
             assert name.removeprefix("SLOWDRIFT_").lower() in Settings.model_fields
 
 
-@pytest.mark.parametrize("service", ["api", "worker", "interactive"])
+@pytest.mark.parametrize("service", ["api", "worker", "interactive", "hydrodynamics"])
 def test_commands_are_understood(service: str, monkeypatch: pytest.MonkeyPatch) -> None:
     import cli.serve
     import cli.worker

@@ -18,7 +18,6 @@ pytestmark = [pytest.mark.services, pytest.mark.slow]
     ("kind", "fault"),
     [
         ("embedded", "disk full"),
-        ("embedded", "memory eaten"),
         ("postgres-redis", "API killed in submissions"),
         ("postgres-redis", "broker killed, data lost"),
         ("postgres-redis", "database killed"),

@@ -91,3 +91,27 @@ def test_the_python_client_of_the_docs(client: httpx.Client) -> None:
     lines = done.stdout.splitlines()
     assert lines[-2].startswith("surge: ")
     assert lines[-1].startswith("spectrum over ")
+
+
+def test_a_rerun_and_a_study_of_the_same_give_the_same_numbers(client: httpx.Client) -> None:
+    text = (ROOT / "examples" / "hanging-riser-case1.yaml").read_text()
+    analyses = ["statics", "frequency_domain"]
+    first = client.post("/api/v1/runs", json={"yaml": text, "analyses": analyses}).json()
+    again = client.post(f"/api/v1/runs/{first['id']}/rerun").json()
+    study = {"case_id": first["case_id"], "analyses": analyses, "overrides": [{}, {"/environment/depth": 301.0}]}
+    made = client.post("/api/v1/studies", json=study).json()
+    wait_until(lambda: client.get("/api/v1/runs?state=queued,running").json()["total"] == 0, 120)
+    assert client.get("/api/v1/runs?state=succeeded").json()["total"] == 4
+    same, other = client.get(f"/api/v1/studies/{made['id']}/runs").json()["items"]
+    assert same["content_hash"] == first["content_hash"] != other["content_hash"]
+    summaries = [
+        _numbers(client.get(f"/api/v1/runs/{run['id']}/summary").json()) for run in (first, again, same, other)
+    ]
+    assert summaries[0] == summaries[1] == summaries[2] != summaries[3]
+
+
+def _numbers(summary: object) -> object:
+    """Without the times that it took."""
+    if isinstance(summary, dict):
+        return {key: _numbers(value) for key, value in summary.items() if key not in ("wall_time", "compile_time")}
+    return summary

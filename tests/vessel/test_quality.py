@@ -1,6 +1,7 @@
 """Quality checks: content with data that obey Haskind, Kramers and Kronig, and each fault found with its size."""
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -179,3 +180,20 @@ def test_a_qtf_against_its_mirror_and_the_mean_drift():
     found = of(dataclasses.replace(data, qtf=dataclasses.replace(data.qtf, values=skew)), "qtf-hermitian")
     assert found.state == "warning"
     assert found.value < 1e-3
+
+
+def test_the_irregular_frequency_of_a_barge_without_a_lid():
+    """Heave of the example's barge solved without a lid: the added mass jumps at 1.06 to 1.08 rad/s (the CSV says how)."""
+    omega, added, damping = np.loadtxt(Path(__file__).with_name("barge-without-lid.csv"), delimiter=",", skiprows=2).T
+    plain = consistent(omega=omega)
+    matrices = [np.array(table) for table in (plain.added_mass, plain.damping)]
+    for table, values in zip(matrices, (added, damping), strict=True):
+        table[:, 2, 2] = values
+    data = dataclasses.replace(plain, added_mass=matrices[0], damping=matrices[1])
+    found = of(data, "spikes")
+    assert found.state == "warning"
+    assert found.value == pytest.approx(0.077, abs=0.002)
+    assert "added mass of heave at 1.06 rad/s" in found.message
+    assert "lid" in found.message
+    healthy = (omega < 1.0) | (omega > 1.12)  # the same data without the frequencies that are spoilt
+    assert np.abs(off_the_line(omega[healthy], added[healthy])).max() < 0.01

@@ -6,6 +6,8 @@
   const EDITS = "slowdrift.draft.edits";
   const READ_MS = 180;
   const CHECK_MS = 260;
+  const RETRY_MS = 1500;
+  const RETRIES = 40;
   const config = () => JSON.parse(document.getElementById("_dash-config").textContent);
   const prefix = () => config().requests_pathname_prefix;
   const set = (id, props) => document.getElementById("new-page") && window.dash_clientside.set_props(id, props);
@@ -160,11 +162,13 @@
     }
   }
 
-  async function preview(text, mine) {
+  /* A worker that starts or is busy answers too late (503, 504): ask again while this is still the text. */
+  async function preview(text, mine, tries = 0) {
     const started = performance.now();
-    set("preview-note", { children: "Finding the equilibrium …" });
-    const { ok, body } = await ask(`${API}/preview`, text, "application/yaml").catch(() => ({ ok: false, body: null }));
+    set("preview-note", { children: tries ? "The preview takes longer than usual; trying again …" : "Finding the equilibrium …" });
+    const { ok, status, body } = await ask(`${API}/preview`, text, "application/yaml").catch(() => ({ ok: false, body: null }));
     if (mine !== turn || !body) return;
+    if ((status === 503 || status === 504) && tries < RETRIES) return later("preview", RETRY_MS, () => mine === turn && preview(text, mine, tries + 1));
     const took = Math.round(performance.now() - started);
     set("case-preview", { data: ok ? { shape: body, text, took } : { problem: body, text } });
   }

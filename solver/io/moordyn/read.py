@@ -74,6 +74,10 @@ def read_deck(text: str | bytes, base: str | bytes | None = None, name: str | No
     coupled = any(point.kind == "coupled" for point in system.points.values())
     data["vessel"] = vessel if vessel is not None else _template(report) if coupled else None
     data["line_types"] = _types(system)
+    renamed = [f"{name} {label}" for name, label in _labels(system).items() if name != label]
+    report.assumed.extend(
+        f"line type {pair.replace(' ', ' is called ')}, for a case takes plain letters" for pair in renamed
+    )
     data |= _lines(system, data["environment"]["depth"], vessel, report)
     _bed_damping(options, system, data, report)
     data["analyses"] = kept.get("analyses") or {"statics": {}}
@@ -224,8 +228,9 @@ def _bed_damping(options: dict[str, float], system: System, data: dict[str, Any]
 
 def _types(system: System) -> dict[str, Any]:
     """MoorDyn's tangential drag acts on the surface πdl, ours on the diameter: factor π. The rest is the same."""
+    labels = _labels(system)
     return {
-        _label(name): {
+        labels[name]: {
             "diameter": kind.diameter, "mass": kind.mass, "EA": kind.EA, "EI": kind.EI,
             "drag": {"normal": kind.Cdn, "tangential": math.pi * kind.Cdt},
             "added_mass": {"normal": kind.Can, "tangential": kind.Cat},
@@ -234,21 +239,29 @@ def _types(system: System) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _label(name: str) -> str:
-    """A name as a case takes it."""
-    return re.sub(r"[^A-Za-z0-9 _.\-]", "_", name).lstrip(" _.-")[:60] or "type"
+def _labels(system: System) -> dict[str, str]:
+    """Names of line types as a case takes them, each its own."""
+    found: dict[str, str] = {}
+    for name in system.kinds:
+        plain = re.sub(r"[^A-Za-z0-9 _.\-]", "_", name).lstrip(" _.-")[:50] or "type"
+        label, count = plain, 2
+        while label in found.values():
+            label, count = f"{plain}-{count}", count + 1
+        found[name] = label
+    return found
 
 
 def _lines(system: System, depth: float, vessel: Any, report: Report) -> dict[str, Any]:
     """Lines and attachments; lines that are equal in everything become one with a multiplicity."""
     place = _Placement(depth, vessel, report)
+    labels = _labels(system)
     lines: dict[str, Any] = {}
     attachments: list[dict[str, Any]] = []
     seen: dict[str, str] = {}
     for chain in system.chains:
         name = f"line-{min(chain.links, key=lambda link: link.row.line).id}"
         loads = _loads(chain)
-        spec = _line(chain, place)
+        spec = _line(chain, place, labels)
         key = json.dumps([spec, loads], sort_keys=True)
         ids = "+".join(link.id for link in chain.links)
         if key in seen:
@@ -263,8 +276,8 @@ def _lines(system: System, depth: float, vessel: Any, report: Report) -> dict[st
     return {"lines": lines, "attachments": attachments}
 
 
-def _line(chain: Chain, place: _Placement) -> dict[str, Any]:
-    segments = [{"type": _label(link.type), "length": link.length, "elements": link.segments} for link in chain.links]
+def _line(chain: Chain, place: _Placement, labels: dict[str, str]) -> dict[str, Any]:
+    segments = [{"type": labels[link.type], "length": link.length, "elements": link.segments} for link in chain.links]
     spec: dict[str, Any] = {"segments": segments, "end_a": place.end(chain.start), "end_b": place.end(chain.end)}
     if math.dist(chain.start.xyz, chain.end.xyz) >= chain.length:
         spec["allow_stretch"] = True

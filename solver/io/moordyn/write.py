@@ -89,16 +89,17 @@ def _text(case: Case, tables: _Tables, options: list[tuple[float, str, str]], re
         "Name Diam MassDen EA BA/-zeta EI Cd Ca CdAx CaAx",
         "(-) (m) (kg/m) (N) (N-s/-) (N-m^2) (-) (-) (-) (-)",
     ]
+    words = _words(case)
     for name, kind in case.line_types.items():
         values = (kind.diameter, kind.mass, kind.EA, -1.0, kind.EI, kind.drag.normal, kind.added_mass.normal,
                   kind.drag.tangential / math.pi, kind.added_mass.tangential)  # fmt: skip
-        out.append(" ".join([_word(name), *map(_number, values)]))
+        out.append(" ".join([words[name], *map(_number, values)]))
     out += [_heading("POINTS"), "ID Attachment X Y Z Mass Volume CdA Ca", "(#) (-) (m) (m) (m) (kg) (m^3) (m^2) (-)"]
     for index, (attachment, xyz, load) in enumerate(tables.points, 1):
         out.append(" ".join([str(index), attachment, *map(_number, (*xyz, *load))]))
     out += [_heading("LINES"), "ID LineType AttachA AttachB UnstrLen NumSegs Outputs", "(#) (-) (#) (#) (m) (-) (-)"]
     for index, (type_, a, b, length, count) in enumerate(tables.lines, 1):
-        out.append(f"{index} {_word(type_)} {a} {b} {_number(length)} {count} -")
+        out.append(f"{index} {words[type_]} {a} {b} {_number(length)} {count} -")
     out.append(_heading("OPTIONS"))
     out += [f"{_number(value)} {word} - {text}" for value, word, text in options]
     out += [_heading("OUTPUTS"), *(f"FairTen{index}" for index in range(1, len(tables.lines) + 1))]
@@ -113,8 +114,16 @@ def _plain(text: str) -> str:
     return printable(text).lstrip("- ") or "case"
 
 
-def _word(name: str) -> str:
-    return name.replace(" ", "_")
+def _words(case: Case) -> dict[str, str]:
+    """Names of line types without blanks, each its own."""
+    found: dict[str, str] = {}
+    for name in case.line_types:
+        plain = name.replace(" ", "_")
+        word, count = plain, 2
+        while word in found.values() or (word != name and word in case.line_types):
+            word, count = f"{plain}-{count}", count + 1
+        found[name] = word
+    return found
 
 
 def _number(value: float) -> str:

@@ -92,6 +92,14 @@ class HydrodynamicData:
         """Headings of the mean drift [rad]."""
         return self.headings if self.mean_drift_headings is None else self.mean_drift_headings
 
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all arrays."""
+        tables = [value for value in vars(self).values() if isinstance(value, np.ndarray)]
+        if self.qtf is not None:
+            tables += [self.qtf.values, *self.qtf.cross.values()]
+        return sum(table.nbytes for table in tables)
+
     # --- evaluation
 
     def excitation_at(self, omega: Array, heading: float) -> Array:

@@ -137,15 +137,19 @@ def _rabbitmq(folder: Path) -> tuple[Server, str]:
     environment = {
         "HOME": str(folder.parent),
         "RABBITMQ_NODENAME": f"sd{name}@localhost",
-        "RABBITMQ_NODE_IP_ADDRESS": "127.0.0.1",
-        "RABBITMQ_NODE_PORT": str(port),
+        "RABBITMQ_CONFIG_FILE": str(folder.parent / "rabbitmq.conf"),
         "RABBITMQ_DIST_PORT": str(free_port()),
         "RABBITMQ_MNESIA_BASE": str(folder),
         "RABBITMQ_LOG_BASE": str(folder.parent),
         "RABBITMQ_ENABLED_PLUGINS_FILE": str(folder.parent / "no-plugins"),
         "RABBITMQ_SERVER_ADDITIONAL_ERL_ARGS": "+S 1:1",
     }
-    server = Server("rabbitmq", [str(program)], folder, lambda: _answers_amqp(port), environment)
+
+    def prepare() -> None:
+        (folder.parent / "rabbitmq.conf").write_text(f"listeners.tcp.1 = 127.0.0.1:{port}\n")
+        (folder.parent / "no-plugins").write_text("[].\n")
+
+    server = Server("rabbitmq", [str(program)], folder, lambda: _answers_amqp(port), environment, prepare)
     return server, f"amqp://guest:guest@127.0.0.1:{port}//"
 
 

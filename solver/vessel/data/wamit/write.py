@@ -14,8 +14,6 @@ from ..qtf import QTF
 from .first import Scale
 from .text import Array
 
-NEGLIGIBLE = 0.0  # a pair of .1 that is exactly zero at every frequency vanishes by symmetry and is left out
-
 
 def write_wamit(data: HydrodynamicData, stem: str, length: float | None = None) -> dict[str, bytes]:
     """The files by name: .1 and .3, and .4, .8 or .9, .12d, .hst for what there is.
@@ -89,7 +87,7 @@ def _radiation(data: HydrodynamicData, scale: Scale) -> Iterator[str]:
     limits = [(0.0, data.added_mass_zero), (math.inf, data.added_mass_infinite)]
     there = [(omega, matrix) for omega, matrix in limits if matrix is not None]
     everything = [data.added_mass, data.damping, *(matrix[None] for _, matrix in there)]
-    used = np.argwhere(np.concatenate([np.abs(part) for part in everything]).max(axis=0) > NEGLIGIBLE).tolist()
+    used = np.argwhere(np.concatenate(everything).any(axis=0)).tolist()  # the others vanish by symmetry
     for omega, matrix in there:
         for i, j in used:
             yield f"{_period(omega)}{i + 1:6d}{j + 1:6d}{_number(matrix[i, j] / factor[i, j])}\n"

@@ -27,7 +27,7 @@ def _dragged(mu: float = MU, **spec: Any) -> dict[str, Any]:
     data["lines"]["line"]["allow_stretch"] = True
     data["environment"]["seabed"] = {"node_stiffness": 4e4, "transition": 0.02, "damping": 4e3, "friction": mu,
                                      "friction_speed": SLOW}  # fmt: skip
-    data["lines"]["line"]["end_b"]["motion"] = {"surge": {"amplitude": 0.5, "period": 60.0, "phase": "-90 deg"}}
+    data["lines"]["line"]["end_b"]["motion"] = {"surge": {"amplitude": 1.0, "period": 60.0, "phase": "-90 deg"}}
     return timed(data, **{"step": 0.01, "build_up": 60.0, "duration": 60.0, "output_step": 0.1, **spec})
 
 
@@ -41,15 +41,15 @@ def test_tension_falls_by_friction_along_a_dragged_line() -> None:
     """Sliding slowly towards the pull, each node takes μ times its weight: T_j+1 - T_j = μ w l."""
     data = _dragged()
     block = block_of(data)
-    block.go(block.run.time.build_up + round(50.0 / 0.01))  # the top moves on outward at a fifth of its largest speed
+    block.go(block.run.time.build_up + round(58.0 / 0.01))  # 13 s after the top turned outward
     weight = _weight(block)
     x, v = block.state.x[..., 0], block.state.v[..., 0]
     arrays = block.run.static.lines[0].arrays
     tension = arrays.EA * (np.linalg.norm(np.diff(x, axis=0), axis=1) / arrays.L - 1)
-    slides = np.flatnonzero(v[1:-1, 0] > 5 * SLOW) + 1
+    slides = np.flatnonzero(v[1:-2, 0] > 5 * SLOW) + 1  # the last node hangs in part on the end
     assert slides.size >= 5
     share = v[slides, 0] / np.sqrt(v[slides, 0] ** 2 + SLOW**2)
-    np.testing.assert_allclose(np.diff(tension)[slides - 1], MU * weight * share, rtol=0.03)
+    np.testing.assert_allclose(np.diff(tension)[slides - 1], MU * weight * share, rtol=0.02)
 
 
 def test_friction_takes_the_work_of_the_end() -> None:
@@ -95,7 +95,6 @@ def test_a_line_on_the_bed_creeps_below_the_friction_it_could_have() -> None:
 
 def test_the_analyses_that_leave_friction_out_say_so() -> None:
     data = _dragged()
-    data["lines"]["line"]["end_b"].pop("motion")
     data["analyses"] = {"statics": {}, "modes": {}, "frequency_domain": {}}
     said = [text for text in build(parse_case(data), None).warnings if "friction" in text]
     assert said == [

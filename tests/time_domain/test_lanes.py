@@ -263,7 +263,9 @@ def test_angle_over_sine_is_a_series_good_to_75_degrees() -> None:
 
 def test_a_node_that_rises_from_the_deep_leaves_the_water() -> None:
     """From any depth: its wet share is that of where it is."""
-    moving = Moving(_span(24), 1, 3)
+    data = _span(24)
+    data["line_types"]["wire"]["EI"] = 0.0
+    moving = Moving(data, 1, 3)
     deep = int(np.argmin(moving.x[1:-1, 2, 0])) + 1
     assert moving.x[deep, 2, 0] < -60.0
     moving.residual(moving.x, moving.v, moving.a)

@@ -27,9 +27,9 @@ class Results:
 
     @cached_property
     def stored_case(self) -> dict[str, Any]:
-        """The case version with its YAML; empty when it is gone."""
+        """The very case that the run computed (a study's run: with its changes) and its YAML; empty when there is none."""
         try:
-            found: dict[str, Any] = self.client.get(f"/cases/{self.run['case_id']}")
+            found: dict[str, Any] = self.client.get(f"/runs/{self.run_id}/case")
         except ApiError:
             return {}
         return found

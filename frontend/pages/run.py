@@ -147,7 +147,7 @@ def _head(results: Results) -> tuple[Any, ...]:
     summary = results.summary if done else {}
     tabs = panels.available(results) if done else [panels.find("overview"), panels.find("case")]
     return (
-        run.get("case_name") or "Run",
+        run.get("name") or run.get("case_name") or "Run",
         run_head.facts(run),
         run_head.actions(run, bool(summary)),
         run_head.told(run, summary),
@@ -194,16 +194,11 @@ def cancel(clicks: int | None, run_id: str) -> Any:
 
 
 def again(clicks: int | None, run_id: str) -> tuple[Any, Any]:
-    """The same case once more, as a new run."""
+    """The same case, data and analyses once more, as a new run."""
     if not clicks:
         return no_update, no_update
 
-    def start() -> str:
-        run = client().get(f"/runs/{run_id}")
-        made = client().post("/runs", {"case_id": run["case_id"], "analyses": run["analyses"]})
-        return str(made["id"])
-
-    new_id, error = attempt(start)
+    made, error = attempt(lambda: client().post(f"/runs/{run_id}/rerun", {}))
     if error:
         return no_update, notice("Not started", error.text, "red")
-    return page_path(f"/runs/{new_id}"), no_update
+    return page_path(f"/runs/{made['id']}"), no_update

@@ -70,17 +70,21 @@ def register_sharing(app: Dash, page: str) -> None:
 
 def facts(run: dict[str, Any]) -> str:
     parts = [", ".join(analysis_name(name) for name in run.get("analyses") or [])]
+    if run.get("name"):
+        parts.append(f"case “{run.get('case_name')}”")
     if run.get("created_at"):
-        parts.append(f"created {moment(run['created_at'])}")
+        by = f" by {run['created_by']}" if run.get("created_by") else ""
+        parts.append(f"created {moment(run['created_at'])}{by}")
     if run.get("finished_at") and run.get("started_at"):
         parts.append(f"took {duration(run)}")
     if (run.get("attempt") or 0) > 1:
         parts.append(f"attempt {run['attempt']}")
+    parts += run.get("tags") or []
     return " · ".join(part for part in parts if part)
 
 
 def actions(run: dict[str, Any], has_summary: bool) -> list[Any]:
-    made: list[Any] = [button_link("Edit as new", f"/new?case={run['case_id']}", kind="default")]
+    made: list[Any] = [button_link("Edit as new", f"/new?run={run['id']}", kind="default")]
     made.append(
         dmc.Button(
             "Run again", id="run-again", variant="default", size="xs", style=None if run["state"] in FINAL else HIDDEN

@@ -42,7 +42,9 @@ def provenance(results: Results) -> list[tuple[str, str]]:
     run = results.run
     rows = [
         ("Run", run["id"]),
-        ("Case", f"{run.get('case_name')} (version {results.stored_case.get('version', MISSING)})"),
+        ("Case", str(run.get("case_name"))),
+        ("Changed by its study", said(run.get("overrides") or None)),
+        ("Started by", said(run.get("created_by"))),
         ("Created", moment(run.get("created_at"))),
         ("Started", moment(run.get("started_at"))),
         ("Finished", moment(run.get("finished_at"))),

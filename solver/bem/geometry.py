@@ -84,10 +84,10 @@ def wetted(mesh: Panels, kind: str, scale: float, move: Array, name: str) -> Hul
         )
     below, flat = below_water(mesh)
     single = below.chosen(np.sort(np.unique(np.sort(below.faces, axis=1), axis=0, return_index=True)[1]))
-    solid = single.chosen(single.areas > TINY * single.areas.mean())
+    solid = single.chosen(single.areas * max(single.count, 1) > TINY * single.areas.sum())
     panels = welded(solid)
     if not 0 < panels.count <= MAX_PANELS:
-        raise DataError(f"{name}: {panels.count} panels below the water; allowed: 1 to {MAX_PANELS}")
+        raise DataError(f"{name}: {panels.count} panels with an area below the water; allowed: 1 to {MAX_PANELS}")
     box = float(np.prod(np.ptp(panels.vertices, axis=0)))
     if not abs(panels.volume) > LEAST_VOLUME * box or box == 0:
         raise DataError(

@@ -51,7 +51,7 @@ def contains(segments: Array, points: Array) -> Array:
     for start in range(0, points.shape[0], 2000):
         x, y = points[start : start + 2000, :1], points[start : start + 2000, 1:]
         crosses = (y1 > y) != (y2 > y)
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # of edges that are not crossed
             at = x1 + (y - y1) * (x2 - x1) / (y2 - y1)
         inside[start : start + 2000] = np.count_nonzero(crosses & (x < at), axis=1) % 2 == 1
     return inside

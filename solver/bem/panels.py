@@ -226,7 +226,7 @@ def below_water(mesh: Panels) -> tuple[Panels, int]:
             start = len(corners)
             corners.extend(polygon)
             faces.append([start, start + 1, start + 2, start + len(polygon) - 1])
-        pieces.append(Panels(np.array(corners), np.array(faces)))
+        pieces.append(Panels(np.array(corners).reshape(-1, 3), np.array(faces, int).reshape(-1, 4)))
     return welded(joined(pieces)), flat
 
 

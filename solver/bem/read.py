@@ -134,7 +134,9 @@ def _facets(payload: bytes) -> int | None:
 def _triangles(corners: Array) -> Panels:
     count = corners.shape[0]
     index = np.arange(3 * count).reshape(-1, 3)
-    return Panels(corners.reshape(-1, 3).astype(float), np.column_stack([index, index[:, 2]]))
+    with np.errstate(invalid="ignore"):  # bytes of anybody may be a number that signals; it is refused as not finite
+        corners = corners.reshape(-1, 3).astype(float)
+    return Panels(corners, np.column_stack([index, index[:, 2]]))
 
 
 def _read_stl(payload: bytes, name: str) -> Panels:

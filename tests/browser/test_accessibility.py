@@ -12,8 +12,8 @@ from tests.browser.conftest import NARROW, WIDE, Watch, _page
 from tests.browser.test_runs import made
 
 axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe-playwright-python is not installed")
-pytestmark = pytest.mark.browser
-TABS = ("overview", "spectra", "time", "raos", "lines", "shape", "modes", "case")
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+TABS = ("overview", "spectra", "time", "raos", "lines", "shape", "motion", "modes", "case")
 
 
 @pytest.fixture(params=[WIDE, NARROW], ids=["wide", "narrow"])
@@ -52,7 +52,7 @@ def test_lists_and_editor(watched: Watch) -> None:
         steps.write(page, text.replace("3300 m", "-5 m", 1))
     expect(page.locator(".sd-problem").first).to_be_visible()
     found += faults(page, "editor with a fault")
-    for path in ("compare", "studies"):
+    for path in ("compare", "studies", "new-study", "data", "hull", "account", "sign-in"):
         page.goto(f"/app/{path}")
         expect(page.get_by_role("heading", level=1)).to_be_visible()
         found += faults(page, path)

@@ -162,10 +162,15 @@ class Bench:
             window.dash_clientside.set_props('runs-refresh', { data: Date.now() });
             await new Promise((done) => setTimeout(done, 150));
           }
-          window.gc();
-          return performance.memory.usedJSHeapSize / 1e6;
         }"""
-        found = [round(page.evaluate(script), 1) for _ in range(10)]
+        inspector = page.context.new_cdp_session(page)
+        inspector.send("Performance.enable")
+        found = []
+        for _ in range(10):
+            page.evaluate(script)
+            inspector.send("HeapProfiler.collectGarbage")
+            metrics = {one["name"]: one["value"] for one in inspector.send("Performance.getMetrics")["metrics"]}
+            found.append(round(metrics["JSHeapUsedSize"] / 1e6, 1))
         page.context.close()
         return found
 

@@ -98,7 +98,8 @@ async def admit(request: Request) -> None:
     A dependency of every route under /api/v1 (api/main.py); `ScopeDep` gives what it noted.
     """
     need = need_of(request.scope.get("endpoint"), request.method, request.path_params)
-    scope, changes = await run_in_threadpool(_decide, request, need)
+    asks = _asks_the_database(request, need)
+    scope, changes = await run_in_threadpool(_decide, request, need) if asks else _decide(request, need)
     act = acting.get()
     if act is not None:
         act.team_id, act.project_id = scope.team_id, scope.project_id
@@ -114,6 +115,16 @@ def _template(request: Request) -> str:
     for name, value in request.path_params.items():
         path = path.replace(f"/{value}", f"/{{{name}}}")
     return path
+
+
+def _asks_the_database(request: Request, need: Need) -> bool:
+    """Whether deciding takes a look-up, which then must not hold up the others."""
+    principal = get_principal(request)
+    if need == "link" or principal is None:
+        return need == "link"
+    if principal.kind == "local":
+        return bool(_named_project(request)) or "team_id" in request.path_params
+    return len(principal.homes) > 1 and any(name in PLACES for name in request.path_params)
 
 
 def _decide(request: Request, need: Need) -> tuple[Scope, bool]:
@@ -157,8 +168,7 @@ def _place(context: Context, principal: Principal, request: Request) -> Home | N
 
     Raises NotFoundError for a team or project that is not the caller's.
     """
-    given = request.path_params
-    asked = given.get("project_id") or request.query_params.get("project") or request.headers.get("slowdrift-project")
+    given, asked = request.path_params, _named_project(request)
     if principal.kind == "local" and not asked and "team_id" not in given:
         return Home(Scope().team_id, "default", Scope().project_id, "default", OWNER)
     homes = principal.homes
@@ -177,6 +187,11 @@ def _place(context: Context, principal: Principal, request: Request) -> Home | N
     with context.database.read() as session:
         there = EntryRepository(session).project_of(row, given[row], [each.project_id for each in principal.homes])
     return next((each for each in principal.homes if each.project_id == there), home)
+
+
+def _named_project(request: Request) -> str | None:
+    named = request.path_params.get("project_id") or request.query_params.get("project")
+    return named or request.headers.get("slowdrift-project")
 
 
 def _first(homes: Iterable[Home], what: str, key: str, attribute: str) -> Home:

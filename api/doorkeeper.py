@@ -39,7 +39,7 @@ class Doorkeeper:
             return await self.app(scope, receive, send)
         connection = HTTPConnection(scope)
         try:
-            principal = await run_in_threadpool(self._recognise, connection)
+            principal = LOCAL if self._alone() else await run_in_threadpool(self._recognise, connection)
         except SQLAlchemyError:
             log.exception("Nobody can be recognised: the database does not answer")
             return await problem(503, "unavailable", "The database cannot be reached.")(scope, receive, send)
@@ -54,9 +54,13 @@ class Doorkeeper:
             acting.set(Acting(principal.actor if principal else "", user.id if user else None, address))
         return await self.app(scope, receive, send)
 
+    def _alone(self) -> bool:
+        """Whether there was no account a moment ago."""
+        return not self._accounts and time.monotonic() - self._asked_at < ASK_AGAIN
+
     def accounts_on(self) -> bool:
         """Once there is an account it stays so; until then the database is asked again now and then."""
-        if not self._accounts and time.monotonic() - self._asked_at > ASK_AGAIN:
+        if not self._accounts and not self._alone():
             with self.context.database.read() as session:
                 self._accounts = EntryRepository(session).any_account()
             self._asked_at = time.monotonic()

@@ -3,6 +3,7 @@
 Measured from a cold cache (a fresh browser profile each time): the list usable, the editor usable, a run page with twelve
 plots (six RAOs, amplitude and phase each); then zooming in a history of 150 000 samples, and the editor's preview after
 an edit. Medians of `--times`.
+With `--many` also the heap of the list's page after each ten of a hundred reloads of its rows: it stays level.
 Without --url a service of its own is started in a temporary folder. `--many N` puts N runs into the list first.
 """
 
@@ -151,6 +152,28 @@ class Bench:
             )
         page.context.close()
 
+    def heap(self) -> list[float]:
+        """Megabytes in use after each ten of a hundred reloads of the list's rows."""
+        page = self.page()
+        page.goto("/app/")
+        page.wait_for_selector(".ag-row")
+        script = """async () => {
+          for (let i = 0; i < 10; i += 1) {
+            window.dash_clientside.set_props('runs-refresh', { data: Date.now() });
+            await new Promise((done) => setTimeout(done, 150));
+          }
+        }"""
+        inspector = page.context.new_cdp_session(page)
+        inspector.send("Performance.enable")
+        found = []
+        for _ in range(10):
+            page.evaluate(script)
+            inspector.send("HeapProfiler.collectGarbage")
+            metrics = {one["name"]: one["value"] for one in inspector.send("Performance.getMetrics")["metrics"]}
+            found.append(round(metrics["JSHeapUsedSize"] / 1e6, 1))
+        page.context.close()
+        return found
+
 
 def measure(origin: str, times: int, many: int) -> dict[str, Any]:
     examples = {e["name"]: e["yaml"] for e in httpx.get(f"{origin}/api/v1/examples").json()}
@@ -172,6 +195,8 @@ def measure(origin: str, times: int, many: int) -> dict[str, Any]:
         bench.zoom(long)
         bench.preview()
         bench.pages_of_the_list()
+        if many:
+            print("heap of the list's page [MB]:", bench.heap())
         browser.close()
     return {name: {"median_s": round(statistics.median(all_), 3), "worst_s": round(max(all_), 3), "limit_s": LIMITS[name]}
             for name, all_ in bench.found.items()}  # fmt: skip

@@ -42,7 +42,8 @@ def export_moordyn(
     scope: ScopeDep,
     case_id: Key,
     run: Annotated[
-        str | None, Query(max_length=64, description="a run of this case whose statics placed its anchors")
+        str | None,
+        Query(pattern=r"^[0-9A-Za-z-]{1,64}$", description="a run of this case whose statics placed its anchors"),
     ] = None,
 ) -> Response:
     """The lines of a case as a MoorDyn v2 deck, the report at its head."""

@@ -57,6 +57,23 @@ def test_faults_of_a_deck_have_its_lines(client: TestClient) -> None:
     assert large.status_code == 422
 
 
+def test_letters_that_are_none_are_refused_or_cleaned(client: TestClient) -> None:
+    for body in (
+        '{"deck": "\\ud800"}',
+        '{"deck": "------ LINES ------\\n\\ud800"}',
+        '{"deck": "x", "case": "name: \\udfff"}',
+        '{"deck": "x", "name": "\\ud800"}',
+    ):
+        answer = client.post("/api/v1/imports/moordyn", content=body, headers={"Content-Type": "application/json"})
+        assert answer.status_code == 422, body
+    deck = json.dumps(DECK.replace("1 Vessel", "1 Fixed"))
+    named = '{"deck": %s, "name": "a\\u001b b"}' % deck  # noqa: UP031
+    answer = client.post("/api/v1/imports/moordyn", content=named, headers={"Content-Type": "application/json"})
+    assert answer.status_code == 200, answer.text
+    assert answer.json()["name"] == "a? b"
+    assert client.get("/api/v1/cases/none/moordyn", params={"run": "no run!"}).status_code == 422
+
+
 def test_pretensions_take_a_run_that_has_statics(client: TestClient, database: Database, fpso: str) -> None:
     case = fpso.replace("hydrodynamics:", "#").replace(
         "  trim:", "  hydrostatics: {stiffness: " + str(_stiffness()) + "}\n  trim:"

@@ -148,6 +148,8 @@ def _lines(text: str | bytes) -> Iterator[str]:
     if len(text) > MAX_BYTES:
         raise CaseError([FieldError(("deck",), f"the deck has {len(text)} bytes; allowed: at most {MAX_BYTES}")])
     text = _decoded(text) if isinstance(text, bytes) else text
+    if any("\ud800" <= letter <= "\udfff" for letter in text):
+        raise CaseError([FieldError(("deck",), "the deck is not text: it holds half of a letter (a lone surrogate)")])
     if "\x00" in text:
         raise CaseError([FieldError(("deck",), "the deck is not a text file: it holds zero bytes")])
     lines = re.split(r"\r\n|\r|\n", text)

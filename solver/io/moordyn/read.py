@@ -65,7 +65,7 @@ def read_deck(text: str | bytes, base: str | bytes | None = None, name: str | No
     kept = _base(base)
     data: dict[str, Any] = {
         "slowdrift": 1,
-        "name": name or kept.get("name") or printable(deck.title).strip("- ")[:200] or "MoorDyn deck",
+        "name": printable(name or "") or kept.get("name") or printable(deck.title).strip("- ")[:200] or "MoorDyn deck",
     }
     if "description" in kept:
         data["description"] = kept["description"]

@@ -97,7 +97,7 @@ class State(NamedTuple):
 
 
 class Watch(NamedTuple):
-    """What is seen at every kept step, besides the outputs (T10, T11); part of a checkpoint."""
+    """What is seen at every kept step, besides the outputs (T16, T17); part of a checkpoint."""
 
     range: Array  # (2, N, Q) least and largest tension
     last: Array  # (2, N, Q) tension one and two steps ago

@@ -1,4 +1,4 @@
-"""Whether the steps were short enough for what happened in them: warnings, or a refusal (docs/theory.md, T16-T18)."""
+"""Whether the steps were short enough for what happened in them: warnings, or a refusal (docs/theory.md, T15-T17)."""
 
 from __future__ import annotations
 

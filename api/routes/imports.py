@@ -20,7 +20,12 @@ from .common import Key, problems
 router = APIRouter(tags=["sharing"])
 UPLOAD_BYTES = 2_000_000_000
 """The transport's limit; the setting max_bundle_bytes is the one that counts."""
-_BODY = {"requestBody": {"required": True, "content": {"application/zip": {"schema": {"type": "string", "format": "binary"}}}}}
+_BODY = {
+    "requestBody": {
+        "required": True,
+        "content": {"application/zip": {"schema": {"type": "string", "format": "binary"}}},
+    }
+}
 
 
 async def read_upload(request: Request, context: ContextDep) -> AsyncIterator[IO[bytes]]:

@@ -6,7 +6,8 @@ import pytest
 from fastapi.routing import iter_route_contexts
 
 from tests.access.conftest import World
-from tests.access.matrix import CALLERS, KINDS, MATRIX, Rows, ask
+from tests.access.matrix import CALLERS, KINDS, MATRIX, ask
+from tests.access.rows import Rows
 
 
 @pytest.fixture(scope="module")

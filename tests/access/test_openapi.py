@@ -15,7 +15,8 @@ from schemathesis.checks import not_a_server_error
 
 from api.attempts import Attempts
 from tests.access.conftest import World
-from tests.access.matrix import MATRIX, Rows
+from tests.access.matrix import MATRIX
+from tests.access.rows import Rows
 
 EXAMPLES = int(os.environ.get("SLOWDRIFT_FUZZ_EXAMPLES", "4"))
 

@@ -11,7 +11,7 @@ from typing import Any
 import yaml
 
 from ...case import Case, parse_case
-from ...case.environment import Environment, Seabed
+from ...case.environment import Environment
 from ...case.text import read_text
 from ...case.vessel import Vessel
 from ...outcome import CaseError, FieldError
@@ -195,13 +195,9 @@ def _seabed(options: dict[str, float], environment: dict[str, Any], report: Repo
         f"the bed's stiffness grows over {seabed.get('transition', '0.1 m')} (seabed.transition); MoorDyn's starts at once"
     )
     friction = options.get("friction", 0.0)
-    if friction > 0 and "friction" in Seabed.model_fields:
+    if friction > 0:
         seabed["friction"] = friction
-        report.assumed.append(f"seabed friction {friction:g} in every direction, regularised as docs/theory.md says")
-    elif friction > 0:
-        report.dropped.append(
-            f"seabed friction {friction:g}: anchors feel more, and the vessel's offset is a little larger"
-        )
+        report.assumed.append(f"seabed friction {friction:g} in every direction; it acts in the time domain only")
     return seabed
 
 

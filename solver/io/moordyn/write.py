@@ -75,9 +75,8 @@ def write_deck(case: Case, placed: Mapping[str, Placed] | None = None) -> Writte
         (water.density, "rho", "water density (kg/m^3)"), (case.environment.depth, "WtrDpth", "water depth (m)"),
         (soil, "kBot", "bottom stiffness (Pa/m)"), (damping, "cBot", "bottom damping (Pa-s/m)"),
     ]  # fmt: skip
-    friction = getattr(case.environment.seabed, "friction", None)
-    if friction:
-        options.append((friction, "FrictionCoefficient", "seabed friction (-)"))
+    if case.environment.seabed.friction:
+        options.append((case.environment.seabed.friction, "FrictionCoefficient", "seabed friction (-)"))
     return Written(_text(case, tables, options, report), report)
 
 
@@ -254,6 +253,8 @@ def _bed(case: Case, report: Report) -> tuple[float, float]:
         )
     soil = seabed.node_stiffness / mean if seabed.node_stiffness is not None else seabed.soil or DEFAULT_SOIL
     report.dropped.append(f"seabed.transition {seabed.transition:g} m: MoorDyn's bed begins at once")
+    if seabed.friction:
+        report.dropped.append(f"seabed.friction_speed {seabed.friction_speed:g} m/s: MoorDyn has FricDamp in its place")
     return soil, seabed.damping / mean
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+from importlib.metadata import version
 
 import flask
 from dash import Dash
@@ -13,6 +14,7 @@ from frontend.components import shell
 from frontend.editor import routes
 
 TITLE = "Slowdrift"
+PLOTLY = f"_dash-component-suites/plotly/package_data/plotly.min.js?v={version('plotly')}"
 FIRST = "first.js"  # in the head: the scheme is known before anything is drawn
 
 
@@ -48,7 +50,8 @@ def create_app(api_base_url: str | None = None, prefix: str = "/app/") -> flask.
     )
     app.index_string = app.index_string.replace("<html>", '<html lang="en">', 1).replace(
         "{%css%}",
-        f'{{%css%}}\n        <script src="{prefix}assets/{FIRST}?m={caching.asset_stamp(FIRST)}"></script>',
+        f'{{%css%}}\n        <script src="{prefix}assets/{FIRST}?m={caching.asset_stamp(FIRST)}"'
+        f' data-plotly="{prefix}{PLOTLY}"></script>',
         1,
     )
     pages.register(app)

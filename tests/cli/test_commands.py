@@ -87,11 +87,16 @@ def test_the_settings_are_all_documented() -> None:
         assert f"`SLOWDRIFT_{name.upper()}`" in text, name
 
 
-def test_the_supervisor_has_no_worker_when_told() -> None:
+@pytest.mark.parametrize("capytaine", [True, False])
+def test_the_supervisor_has_no_worker_when_told(monkeypatch: pytest.MonkeyPatch, capytaine: bool) -> None:
     import argparse
+
+    monkeypatch.setattr(serve.importlib.util, "find_spec", lambda _name: object() if capytaine else None)
 
     parser = argparse.ArgumentParser()
     serve.add_options(parser)
     given = parser.parse_args(["--workers", "0", "--no-pages"])
     assert [child.name for child in serve._children(given, 3, 8000)] == ["api"]
-    assert [child.name for child in serve._children(parser.parse_args([]), 3, 8000)] == ["api", "worker", "interactive"]
+    hulls = ["hydrodynamics"] if capytaine else []
+    names = [child.name for child in serve._children(parser.parse_args([]), 3, 8000)]
+    assert names == ["api", "worker", "interactive", *hulls]

@@ -168,7 +168,9 @@ def _compute(worker: Worker, ticket: Ticket, keeper: Keeper) -> str:
 def _hydrodynamics(worker: Worker, ticket: Ticket, keeper: Keeper, assignment: Assignment) -> str:
     name, made, summary, warnings = hydrodynamics.compute(assignment, worker.settings.data_dir, keeper.on_progress)
     text = to_json({hydrodynamics.ANALYSIS: summary | {"data_set": made.summary}})
-    outcome = Outcome(SUCCEEDED, None, {hydrodynamics.ANALYSIS: SUCCEEDED}, text, warnings, solver_version() or "unknown")
+    outcome = Outcome(
+        SUCCEEDED, None, {hydrodynamics.ANALYSIS: SUCCEEDED}, text, warnings, solver_version() or "unknown"
+    )
     keeper.writing = True
 
     def complete(session: Session) -> bool:

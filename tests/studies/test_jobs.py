@@ -29,7 +29,7 @@ def submit(client: TestClient, case: str, status: int = 202, headers: dict[str, 
 
 def order(database: Database, done: list[str]) -> list[str]:
     with database.read() as session:
-        names = dict(session.execute(select(Task.id, Run.case_name).join(Run)).tuples().all())
+        names = {row[0]: row[1] for row in session.execute(select(Task.id, Run.case_name).join(Run))}
     return [names[task] for task in done]
 
 

@@ -9,6 +9,7 @@ from store.broker import EMBEDDED, HYDRODYNAMICS, INTERACTIVE, QUICK, RUNS, queu
 from . import hydrodynamics
 
 QUICK_POLL_SECONDS = 0.05
+NICENESS = 5
 
 
 def run_worker(queue: str = RUNS, concurrency: int = 1) -> None:
@@ -26,6 +27,8 @@ def run_worker(queue: str = RUNS, concurrency: int = 1) -> None:
         app.conf.broker_transport_options |= {"polling_interval": QUICK_POLL_SECONDS}  # somebody waits for the answer
     if queue == HYDRODYNAMICS:
         hydrodynamics.warm_up(settings.data_dir)
+    if queue != INTERACTIVE:
+        os.nice(NICENESS)  # on a machine that is shared, answers to people come before the computing
     queues = [queue]
     if queue == INTERACTIVE:
         queues, concurrency = [INTERACTIVE, QUICK], max(2, concurrency)

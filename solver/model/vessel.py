@@ -81,6 +81,10 @@ class VesselModel:
         force = Drift(self.data, self.drift, yaw)
         return psd_factor(drift_spectrum(omega, _random(systems), force, *self.band))
 
+    def drift_warnings(self, systems: list[tuple[Any, float]], yaw: float) -> tuple[str, ...]:
+        """What to say of the slow drift of wave systems that travel in several directions, at a static yaw (V24)."""
+        return Drift(self.data, self.drift, yaw).warnings([heading for _, heading in systems])
+
     def mean_drift(self, systems: list[tuple[Any, float]], yaw: float) -> Array:
         """Mean drift force of all wave systems at a static yaw, frame axes (6,) [N, N m] (V25)."""
         if not self.has_drift:

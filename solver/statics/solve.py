@@ -115,7 +115,7 @@ def settle(model: Model, start: StaticState, extra: Sequence[Array] | None = Non
             "Check the yaw stiffness of the mooring, or set vessel.mean_drift to exclude.",
         )  # fmt: skip
     state.iterations = iterations
-    return replace(start, state=state, drift=drift, warnings=_warnings(start.lines, state))
+    return replace(start, state=state, drift=drift, warnings=_warnings(model, start.lines, state))
 
 
 def _lines_alone(
@@ -131,8 +131,10 @@ def _lines_alone(
     )  # fmt: skip
 
 
-def _warnings(lines: Sequence[LineModel], state: State) -> tuple[str, ...]:
-    found = []
+def _warnings(model: Model, lines: Sequence[LineModel], state: State) -> tuple[str, ...]:
+    found: list[str] = []
+    if model.vessel is not None:
+        found += model.vessel.drift_warnings(model.wave_systems, float(state.position[5]))
     for line, shape in zip(lines, state.shapes, strict=True):
         tension = axial.tension(line.arrays, shape)
         slack = int(np.sum(tension < 0))

@@ -72,7 +72,8 @@ class Drift:
         if self.kind == "none" or np.abs(apart).max() < 1e-6:
             return ()
         qtf = self.data.qtf if self.data is not None and self.kind == "qtf" else None
-        if qtf is not None and all(qtf.knows(a - self.yaw, b - self.yaw) for a in directions for b in directions):
+        pairs = [(a - self.yaw, b - self.yaw) for a in directions for b in directions if a != b]
+        if qtf is not None and all(qtf.knows(a, b) for a, b in pairs):
             return ()
         return (
             "waves of different directions: their common slow drift is taken as half the sum of each direction's T2, "

@@ -15,6 +15,7 @@ from ..outcome import CaseError, DataError, FieldError
 from ..waves.spectra import hs_in_band, significant_height
 from .data import HydrodynamicData
 from .data.interpolate import PRINTED
+from .drift import Drift
 from .quality import quality_warnings
 from .rigid import about_cg
 
@@ -38,7 +39,11 @@ def fit(case: Case, data: HydrodynamicData) -> tuple[str, ...]:
     ]
     if errors:
         raise CaseError(errors)
-    doubts = (*_below_the_data(case, data, low), *_below_the_pairs(case, choice, data, low))
+    headings = [float(sea.direction) - float(case.vessel.heading) for sea in case.environment.seastates]
+    doubts = (
+        *_below_the_data(case, data, low), *_below_the_pairs(case, choice, data, low),
+        *Drift(data, choice.drift).warnings(headings),
+    )  # fmt: skip
     return (*data.warnings, *quality_warnings(data, low, high), *doubts)
 
 

@@ -58,6 +58,14 @@ def test_a_swell_below_the_band_widens_the_grid_and_not_the_random_sea(source: S
     assert np.all((np.abs(other.amplitudes(4, False)[1]) > 0) == inside)
 
 
+def test_the_common_slow_drift_of_two_directions_is_said_to_be_a_guess(source: Source) -> None:
+    _, static, _ = prepared(_box([REGULAR, RANDOM], "newman"), source)
+    assert len([text for text in static.warnings if "different directions" in text]) == 1
+    for seas, drift in (([REGULAR, RANDOM], "none"), ([{**REGULAR, "direction": "200 deg"}, RANDOM], "newman")):
+        _, static, _ = prepared(_box(seas, drift), source)
+        assert not [text for text in static.warnings if "different directions" in text]
+
+
 def test_its_slow_drift_with_the_random_waves_is_the_double_sum(mixed: Run) -> None:
     assert mixed.vessel is not None
     assert mixed.model.vessel is not None

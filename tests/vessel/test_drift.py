@@ -159,6 +159,7 @@ def test_full_qtf_takes_the_mean_over_two_directions(data):
     m, n = np.meshgrid(omega, omega, indexing="ij")
     table = np.stack([complex_t2(m, n, beta, beta) for beta in headings])
     t2 = Drift(dataclasses.replace(data, qtf=QTF(omega, headings, table)), "qtf")
+    assert "different directions" in t2.warnings([0.0, 1.0])[0]
     a, b = omega[[3, 8]], omega[[9, 4]]
     assert np.allclose(t2(a, b, 0.0, 0.0), complex_t2(a, b, 0.0, 0.0))
     mixed = 0.5 * (complex_t2(a, b, 0.0, 0.0) + complex_t2(a, b, 1.0, 1.0))
@@ -169,6 +170,16 @@ def test_full_qtf_takes_the_mean_over_two_directions(data):
     with pytest.raises(DataError, match="mean_drift_force"):
         Drift(dataclasses.replace(data, mean_drift=None), "newman")
     assert not Drift(None, "none")(a, b, 0.0, 0.0).any()
+
+
+def test_pairs_of_unlike_headings_are_all_that_must_be_known(data):
+    omega, headings = np.linspace(0.1, 1.4, 27), np.array([0.0, 0.5, 1.0])
+    m, n = np.meshgrid(omega, omega, indexing="ij")
+    table = np.stack([complex_t2(m, n, beta, beta) for beta in headings])
+    cross = {(0, 2): complex_t2(m, n, 0.0, 1.0), (1, 2): complex_t2(m, n, 0.5, 1.0)}
+    t2 = Drift(dataclasses.replace(data, qtf=QTF(omega, headings, table, cross=cross)), "qtf")
+    assert t2.warnings([0.25, 1.0]) == ()  # a wave with itself takes the table of one heading
+    assert "different directions" in t2.warnings([0.0, 0.5])[0]
 
 
 def test_mean_force_in_regular_waves(data):

@@ -76,6 +76,17 @@ def test_waves_below_the_pairs_or_the_data_are_said(data):
     assert not [text for text in fit(case("none", tp=6.0), late) if "long-wave limit" in text]
 
 
+def test_waves_of_two_directions_without_their_pairs_are_said():
+    smooth = consistent()
+    held = dataclasses.replace(smooth, mean_drift=np.ones(smooth.excitation.shape))
+    asked = case("newman")
+    for degrees, count in ((0.0, 0), (90.0, 1)):
+        other = asked.environment.seastates[0].model_copy(update={"direction": np.radians(degrees)})
+        seas = asked.environment.model_copy(update={"seastates": [*asked.environment.seastates, other]})
+        said = fit(asked.model_copy(update={"environment": seas}), held)
+        assert len([text for text in said if "different directions" in text]) == count
+
+
 def test_a_regular_wave_outside_is_refused(data):
     assert fault(case("none", regular=1.5), data).field == "environment.seastates.0.period"
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from .case import Case
 from .outcome import CaseError, DataError, FieldError
 from .vessel.data import DataSource, HydrodynamicData, open_for
-from .vessel.fit import fit
+from .vessel.fit import fit, lowest_wave
 from .vessel.rigid import buoyancy_minus_weight, hydrostatic_stiffness, mass_matrix, water_warnings
 from .waves.spectra import hs_in_band, significant_height
 
@@ -23,7 +23,7 @@ def check(case: Case, data: DataSource | None) -> list[str]:
         mass_matrix(case.vessel)
         if case.vessel.hydrodynamics is not None:
             hydro = _opened(case, data)
-            warnings += [*fit(case, hydro), *water_warnings(hydro, case.environment)]
+            warnings += [*fit(case, hydro), *water_warnings(hydro, case.environment, lowest_wave(case))]
         else:
             hydro = None
         hydrostatic_stiffness(case.vessel, hydro)

@@ -15,6 +15,7 @@ from ..case.environment import RegularWave
 from ..vessel.data import HydrodynamicData
 from ..vessel.drift import Drift, drift_spectrum, mean_drift_force, mean_drift_regular, psd_factor
 from ..vessel.excitation import excitation
+from ..vessel.fit import lowest_wave
 from ..vessel.quality import quality_warnings
 from ..vessel.radiation import Radiation, make_radiation
 from ..vessel.rigid import (
@@ -128,7 +129,8 @@ def build_vessel(case: Case, data: HydrodynamicData | None) -> tuple[VesselModel
     warnings = radiation.warnings
     if data is not None:
         seen = quality_warnings(data, float(frequency.wave.from_), float(frequency.wave.to))
-        warnings = (*data.warnings, *seen, *water_warnings(data, case.environment), *warnings)
+        water = water_warnings(data, case.environment, lowest_wave(case))
+        warnings = (*data.warnings, *seen, *water, *warnings)
     return model, warnings
 
 

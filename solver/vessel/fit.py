@@ -47,6 +47,12 @@ def fit(case: Case, data: HydrodynamicData) -> tuple[str, ...]:
     return (*data.warnings, *quality_warnings(data, low, high), *doubts)
 
 
+def lowest_wave(case: Case) -> float:
+    """The lowest frequency of the case's waves [rad/s]: the band's, where there are random ones, and of regular waves."""
+    regular = [2 * math.pi / sea.period for sea in case.environment.seastates if isinstance(sea, RegularWave)]
+    return min([*regular, *([_band(case)[0]] if case.environment.random or not regular else [])])
+
+
 def _band(case: Case) -> tuple[float, float]:
     wave = (case.analyses.frequency_domain or FrequencyDomain()).wave
     return float(wave.from_), float(wave.to)

@@ -107,7 +107,7 @@ def buoyancy_minus_weight(vessel: Vessel, data: HydrodynamicData | None, environ
     return force
 
 
-def water_warnings(data: HydrodynamicData, environment: Environment, lowest: float = 0.2) -> tuple[str, ...]:
+def water_warnings(data: HydrodynamicData, environment: Environment, lowest: float) -> tuple[str, ...]:
     """Sentences where density, gravity or depth of the data differ from the case's; the data are used as they are.
 
     lowest : lowest wave frequency of the analysis [rad/s]; where its wave does not feel the bottom, depth is no matter.

@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from solver.case import parse_case
+from solver.check import check
+from solver.model.build import build
 from solver.outcome import CaseError, DataError
 from solver.vessel.data import QTF
 from solver.vessel.fit import fit
+from tests.systems import Source
 
 from . import wamit_sets as sets
 from .test_quality import consistent, with_pairs
@@ -121,3 +124,15 @@ def test_the_qtf_is_exact_where_it_is_bilinear():
     half = qtf.at(np.array([0.15]), np.array([0.3]), 0.0)
     assert np.allclose(half, 0.5 * qtf.at(np.array([0.3]), np.array([0.3]), 0.0))
     assert not qtf.at(np.zeros(1), np.zeros(1), 0.0).any()
+
+
+def test_whether_waves_feel_the_bottom_is_judged_at_the_cases_longest(data):
+    """1000 m of water beside data for infinite depth: deep for 0.2 rad/s, shallow for 0.15 rad/s and a wave of 40 s."""
+    for asked, count in (
+        (case(low=0.1, wave=(0.2, 1.2)), 0), (case(low=0.1, wave=(0.15, 1.2)), 1),
+        (case("none", regular=15.0), 0), (case("none", regular=40.0), 1),
+    ):  # fmt: skip
+        deep = asked.model_copy(update={"environment": asked.environment.model_copy(update={"depth": 1000.0})})
+        full = dataclasses.replace(data, added_mass_zero=data.added_mass[0])
+        for said in (check(deep, Source(full)), build(deep, Source(full)).warnings):
+            assert len([text for text in said if "feel the bottom" in text]) == count

@@ -104,9 +104,9 @@ def test_the_reference_of_the_case_stands_in_for_a_silent_file(data):
 
 
 def test_water_of_the_data_and_of_the_case(data):
-    assert water_warnings(data, SEA) == ()
+    assert water_warnings(data, SEA, 0.2) == ()
     fresh = Environment(depth=80, water={"density": 1000, "gravity": 9.807})
-    texts = water_warnings(data, fresh)
+    texts = water_warnings(data, fresh, 0.2)
     assert len(texts) == 2
     assert "1025" in texts[0]
     assert "1000" in texts[0]

@@ -47,7 +47,7 @@ def run(
     case: Case, data: DataSource | None, on_progress: OnProgress | None = None, threads: int | None = None
 ) -> Result:
     """Check, plan and do everything here, time-domain seeds in `threads` (default: all cores). Raises as `check`."""
-    check(case, data)
+    doubts = check(case, data)
     chunks = plan(case)
     workers = threads or os.cpu_count() or 1
     total, parts, before = sum(chunk.weight for chunk in chunks), [], 0.0
@@ -60,7 +60,9 @@ def run(
 
         parts.append(run_chunk(case, data, chunk, None, tell, workers))
         before += chunk.weight
-    return merge(case, parts)
+    result = merge(case, parts)
+    result.summary["warnings"] = list(dict.fromkeys([*doubts, *result.summary["warnings"]]))
+    return result
 
 
 def _together(chunks: list[Chunk]) -> list[Chunk]:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from solver.case import DOF, parse_case
+from solver.check import check
 from solver.frequency_domain.linearise import sigmas
 from solver.frequency_domain.solve import FrequencyResult, solve_frequency_domain
 from solver.model.body import rotation
@@ -18,7 +19,7 @@ from solver.run import run
 from solver.statics.solve import solve_statics
 from solver.vessel.rigid import turning
 from tests.frequency_domain.conftest import coupled, sea
-from tests.systems import example
+from tests.systems import Source, example
 
 
 def _solve(data: dict[str, Any], source: Any = None) -> FrequencyResult:
@@ -239,3 +240,12 @@ def test_a_fairlead_moves_as_the_vessel_carries_it(source: Any) -> None:
         carried = (u + np.cross(angle, arm)) @ turned.T
         np.testing.assert_allclose(moved[:, -1], carried, atol=2e-6 * np.abs(carried).max())
         assert np.abs(moved[:, 0]).max() < 1e-12  # the anchor stands still
+
+
+def test_a_run_says_what_the_check_of_its_case_says(source: Source) -> None:
+    data = coupled([sea(tp=25.0)], elements=4)
+    said = check(parse_case(data), source)
+    assert any("the wave band 0.3 to 1.5 rad/s holds Hs" in text for text in said)
+    warnings = run(parse_case(data), source, threads=1).summary["warnings"]
+    assert set(said) <= set(warnings)
+    assert len(set(warnings)) == len(warnings)

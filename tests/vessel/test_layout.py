@@ -1,6 +1,7 @@
 """Hydrodynamic data as NetCDF in Capytaine's layout and back: nothing is lost, and other programs read it."""
 
 import contextlib
+import dataclasses
 import io
 import json
 
@@ -84,6 +85,7 @@ def test_spoilt_files_are_refused_or_read(draw):
     ("name", "change", "text"),
     [
         ("qtf_omega", lambda values: values[::-1], "must rise"),
+        ("qtf_direction", lambda values: values - 1.0, "from 0 to below 2π"),
         ("qtf_pair_headings", lambda values: values + 5, "two positions"),
         ("difference_qtf", lambda values: values * np.array([1, 0.5])[:, None, None, None, None] + 1.0, None),
         ("mean_drift_force", lambda values: values * np.nan, "not finite"),
@@ -100,3 +102,15 @@ def test_parts_that_do_not_fit_are_named(name, change, text, tmp_path):
     else:
         with pytest.raises(DataError, match=text):
             read_bytes(payload, "f.nc")
+
+
+@pytest.mark.parametrize("turn", [-np.pi, np.pi, np.nan])
+def test_headings_of_the_drift_beyond_the_turn_are_refused(turn):
+    """Between -180 and 90 degrees at steps of 90 an interpolation round the circle would go astray."""
+    data = sets.whole()
+    own = {"mean_drift_omega": data.omega, "mean_drift": data.mean_drift[:, 1:]}
+    held = dataclasses.replace(data, **own, mean_drift_headings=np.radians([0.0, 90.0, 180.0, 270.0]))
+    equal(held, read_bytes(dump_netcdf(held), "f.nc"))
+    spoilt = dataclasses.replace(held, mean_drift_headings=held.mean_drift_headings + turn)
+    with pytest.raises(DataError, match=r"mean_drift_direction must rise.*from 0 to below 2π"):
+        read_bytes(dump_netcdf(spoilt), "f.nc")

@@ -17,6 +17,7 @@ import numpy as np
 
 from ...outcome import DataError
 from .hydrodynamics import HydrodynamicData
+from .interpolate import TURN
 from .netcdf import Dataset, numbers, require, take
 from .qtf import QTF
 
@@ -139,9 +140,18 @@ def read_drift(dataset: Dataset, name: str) -> tuple[Array, Array, Array] | None
     omega, headings = (numbers(dataset, axis, name) for axis in ("mean_drift_omega", "mean_drift_direction"))
     dims = ("mean_drift_omega", "mean_drift_direction", "influenced_dof")
     values = require(dataset, "mean_drift_force", dims, name, "give it, or leave mean_drift_omega out").real
-    if np.any(np.diff(omega) <= 0) or np.any(np.diff(headings) <= 0) or omega[0] <= 0:
-        raise DataError(f"{name}: mean_drift_omega and mean_drift_direction must rise, omega from above 0")
+    _rising(omega, headings, "mean_drift_omega", "mean_drift_direction", name)
     return omega, headings, values
+
+
+def _rising(omega: Array, headings: Array, first: str, second: str, name: str) -> None:
+    """Refuse axes between whose points nothing could be found. Raises DataError."""
+    within = bool(np.all((headings >= 0) & (headings < TURN)))  # false for what is not a number
+    finite = bool(np.all(np.isfinite(omega) & (omega > 0)))
+    if not (within and finite and np.all(np.diff(omega) > 0) and np.all(np.diff(headings) > 0)):
+        raise DataError(
+            f"{name}: {first} and {second} must rise, omega from above 0 rad/s, directions from 0 to below 2π rad"
+        )
 
 
 def read_qtf(dataset: Dataset, order: list[int], name: str) -> QTF | None:
@@ -151,13 +161,7 @@ def read_qtf(dataset: Dataset, order: list[int], name: str) -> QTF | None:
     axes = ("qtf_omega", "qtf_omega_2", "influenced_dof")
     remedy = "give it, or leave difference_qtf out"
     omega, headings = (numbers(dataset, axis, name) for axis in ("qtf_omega", "qtf_direction"))
-    if (
-        np.any(np.diff(omega) <= 0)
-        or omega[0] <= 0
-        or np.any(np.diff(headings) <= 0)
-        or not np.isfinite(headings).all()
-    ):
-        raise DataError(f"{name}: qtf_omega and qtf_direction must rise, omega from above 0")
+    _rising(omega, headings, "qtf_omega", "qtf_direction", name)
     values = np.conj(require(dataset, "difference_qtf", ("qtf_direction", *axes), name, remedy)[..., order])
     cross = {}
     if "difference_qtf_cross" in dataset:

@@ -27,6 +27,8 @@ def touchdown(nodes: np.ndarray, arc: np.ndarray, grounded: float) -> np.ndarray
     """Where a line leaves the seabed [m]; None for one that nowhere lies on it, or that lies wholly."""
     if not 0 < grounded < arc[-1]:
         return None
+    if nodes[-1, 2] < nodes[0, 2]:  # end b lies on the bed
+        grounded = arc[-1] - grounded
     return np.array([np.interp(grounded, arc, nodes[:, i]) for i in range(3)])
 
 

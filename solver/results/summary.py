@@ -10,6 +10,7 @@ import numpy as np
 from ..case.quantities import DOF
 from ..forces import axial
 from ..model.build import Model
+from ..model.line import LineModel
 from ..waves.spectra import hs_in_band, significant_height
 from .solved import Solved
 from .statistics import combined_maximum, most_probable_maximum, significant
@@ -61,9 +62,6 @@ def _statics(solved: Solved) -> dict[str, Any]:
     for line, shape, forces in zip(solved.lines, state.shapes, state.end_forces, strict=True):
         end_b, end_a = solved.earth(forces[:3]), solved.earth(forces[3:])
         tension = axial.tension(line.arrays, shape)
-        bed = line.arrays.seabed[1]
-        touching = shape[:, 2] < bed + 1.0 / line.arrays.seabed[0]
-        grounded = float(line.node_arc[touching].max()) if touching[:-1].any() and touching[0] else 0.0
         lines[line.name] = {
             "end_a": {
                 "tension": float(np.linalg.norm(end_a)),
@@ -78,7 +76,7 @@ def _statics(solved: Solved) -> dict[str, Any]:
             "arc_length": _list(line.element_arc),
             "tension": _list(tension),
             "length": line.length,
-            "grounded_length": grounded,
+            "grounded_length": _grounded(line, shape),
             "multiplicity": line.multiplicity,
         }
         loads = [kind for segment in line.spec.segments if (kind := _breaking(solved, segment.type)) is not None]
@@ -88,6 +86,15 @@ def _statics(solved: Solved) -> dict[str, Any]:
     if solved.model.vessel is not None:
         out["vessel"] = {"position": _list(solved.static.position), "mean_drift": _list(solved.static.drift)}
     return {**out, "lines": lines}
+
+
+def _grounded(line: LineModel, shape: Array) -> float:
+    """Arc length from the end on the bed to the last node within the transition height of it; 0 with no end there [m]."""
+    touching = shape[:, 2] < line.arrays.seabed[1] + 1.0 / line.arrays.seabed[0]
+    arc = line.node_arc[touching]
+    if touching[0]:
+        return float(arc.max())
+    return line.length - float(arc.min()) if touching[-1] else 0.0
 
 
 def _breaking(solved: Solved, kind: str) -> float | None:

@@ -85,6 +85,13 @@ def test_touchdown_is_where_the_grounded_length_ends() -> None:
     assert points["a"] == pytest.approx([75, 75, -50])
 
 
+def test_touchdown_of_a_line_whose_end_b_lies_on_the_bed() -> None:
+    line = SHAPE["lines"]["a"]
+    turned = {"arc_length": line["arc_length"], "position": line["position"][::-1]}
+    points = preview.touchdowns({**SHAPE, "lines": {"a": turned}})
+    assert points["a"] == pytest.approx([75, 75, -50])
+
+
 def test_the_plan_says_azimuths_and_directions() -> None:
     notes = preview.plan(SHAPE, TREE)["layout"]["annotations"]
     assert [n["text"] for n in notes] == ["45.0°", "180.0°", "waves", "current"]

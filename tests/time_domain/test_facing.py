@@ -83,6 +83,16 @@ def test_arc_lengths_and_end_tensions_are_in_the_order_of_the_case(source: Sourc
     assert plain["tension_mean"][0] < plain["tension_mean"][-1]
 
 
+def test_what_lies_on_the_bed_is_as_long_from_either_end(source: Source) -> None:
+    lengths = []
+    for data in (_box(), _told_backwards(_box())):
+        data["analyses"] = {"statics": {}}
+        lines = run(parse_case(data), source).summary["statics"]["lines"]
+        lengths.append([line["grounded_length"] for line in lines.values()])
+    assert min(lengths[0]) > 50.0
+    np.testing.assert_allclose(lengths[1], lengths[0], rtol=1e-12)
+
+
 def test_a_line_between_two_fairleads_is_refused() -> None:
     data = _box()
     data["lines"]["line-0"]["end_a"] = {"fairlead": [-25.0, 9.0, -4.0]}

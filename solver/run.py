@@ -157,8 +157,9 @@ def _time_chunk(
     assert spec is not None
     assert chunk.seeds is not None
     seeds = list(range(*chunk.seeds))
+    turned = model.vessel.damping_warnings(float(static.position[5])) if model.vessel is not None else ()
     about = {
-        "warnings": [*model.warnings, *static.warnings],
+        "warnings": [*model.warnings, *static.warnings, *turned],
         "compile_time": compile_time,
         "provenance": provenance(model),
     }

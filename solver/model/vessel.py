@@ -32,6 +32,8 @@ from ..waves.spectra import spectrum
 from .body import VesselBody
 
 Array = np.ndarray
+TURNED = np.radians(2.0)  # static yaw above which quadratic damping unlike along and across is said not to turn with it
+TURNED_ALIKE = 0.05
 
 
 @dataclass(frozen=True)
@@ -81,6 +83,17 @@ class VesselModel:
         """C (W, 6, r) with C Cᴴ the spectrum of the slow drift force at low omega (W,), frame axes (V26, V27)."""
         force = Drift(self.data, self.drift, yaw)
         return psd_factor(drift_spectrum(omega, _random(systems), force, *self.band))
+
+    def damping_warnings(self, yaw: float) -> tuple[str, ...]:
+        """What to say of the time domain's quadratic damping, which a static yaw does not turn (T5)."""
+        unlike = [i for i in (0, 3) if not np.isclose(self.quadratic[i], self.quadratic[i + 1], rtol=TURNED_ALIKE)]
+        if abs(yaw) <= TURNED or not unlike:
+            return ()
+        return (
+            f"time domain: vessel.damping.quadratic acts along the axes of the design position, the vessel lies turned by "
+            f"{math.degrees(yaw):.3g} deg (threshold {math.degrees(TURNED):.3g} deg); the frequency domain turns it; give "
+            "vessel.heading so that the static yaw is small",
+        )
 
     def drift_warnings(self, systems: list[tuple[Any, float]], yaw: float) -> tuple[str, ...]:
         """What to say of the slow drift of wave systems that travel in several directions, at a static yaw (V24)."""

@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from solver.case import parse_case
 from solver.frequency_domain.solve import FrequencyResult, solve_frequency_domain
 from solver.model.build import build
+from solver.run import run
 from solver.statics.solve import solve_statics
 from solver.vessel.data import FileSource
 from tests.systems import EXAMPLES, Source, example, moored_box
@@ -184,3 +185,14 @@ def test_free_decay_with_quadratic_damping_and_finite_fairleads_against_an_ode_s
     assert size[0] > 0.05  # the turning arm pulls it along
     for dofs in (slice(0, 3), slice(3, 6)):
         assert gap[dofs].max() < 5e-3 * size[dofs].max()
+
+
+def test_quadratic_damping_that_a_static_yaw_does_not_turn_is_said() -> None:
+    for surge, load, count in ((1e5, 4e6, 1), (8e5, 4e6, 0), (1e5, 4e5, 0)):
+        data = _on_springs()
+        data["vessel"]["damping"]["quadratic"] = {"surge": surge, "sway": 8e5}
+        data["vessel"]["constant_load"] = {"yaw": load}
+        data["analyses"] = {}
+        result = run(parse_case(timed(data, step=0.1, build_up=0, duration=1, output_step=0.1)), None, threads=1)
+        assert result.failures == {}
+        assert len([text for text in result.summary["warnings"] if "damping.quadratic" in text]) == count

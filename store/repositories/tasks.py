@@ -157,8 +157,14 @@ class TaskRepository:
     # -- ending
 
     def hand_in(self, ticket: Ticket, part: bytes) -> bool:
-        """Store this task's part. True if all the others are in: the task then stays claimed, to merge and complete."""
-        self._lock_run_of(ticket.task_id)
+        """Store this task's part. True if all the others are in: the task then stays claimed, to merge and complete.
+
+        Of a run that was cancelled meanwhile nothing is stored: no worker might be left to end it.
+        """
+        run = self._lock_run_of(ticket.task_id)
+        if run is not None and run.state == CANCELLING:
+            self.give_up(ticket)
+            return False
         others = select(func.count()).select_from(Task)
         others = others.where(Task.run_id == ticket.run_id, Task.id != ticket.task_id, Task.state != SUCCEEDED)
         last = not self.session.scalar(others)

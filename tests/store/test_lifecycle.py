@@ -160,6 +160,19 @@ def test_cancel(database: Database, make: Callable[..., tuple[str, list[str]]]) 
         RunRepository(session, SCOPE).cancel(running)
 
 
+def test_the_last_at_work_hands_in_after_a_cancel(
+    database: Database, make: Callable[..., tuple[str, list[str]]]
+) -> None:
+    """Its block was done before it heard of the cancel: the run ends, since nobody else is left to end it."""
+    run_id, tasks = make(2)
+    ticket = taken(database, tasks[0])
+    with database.write() as session:
+        RunRepository(session, SCOPE).cancel(run_id)
+    with database.write() as session:
+        assert not TaskRepository(session).hand_in(ticket, b"part")
+    assert state(database, run_id) == "cancelled"
+
+
 def test_recovery(database: Database, make: Callable[..., tuple[str, list[str]]]) -> None:
     run_id, (task,) = make()
     with database.write() as session:

@@ -18,6 +18,7 @@ from solver.case import Case
 from solver.outcome import Cancelled, SlowdriftError
 from solver.results.part import Chunk, OnProgress, Part, Result
 from solver.vessel.data import DataSource
+from store.broker import HYDRODYNAMICS
 from store.database import Database
 from store.effective import solver_version, stored_case
 from store.errors import LostLeaseError
@@ -35,6 +36,8 @@ from .keeper import Exceeded, Keeper, Limits, Lost, Released
 log = logging.getLogger(__name__)
 UNKNOWN_RATE = 30.0
 """Seconds that a frequency-domain run is thought to take where none has been seen."""
+RATES = {HYDRODYNAMICS: 1.0}
+"""Seconds per weight where weights are seconds by themselves: a hydrodynamic job's is its estimate."""
 Answer = TypeVar("Answer")
 
 
@@ -99,7 +102,7 @@ def _limits(worker: Worker, ticket: Ticket) -> Limits:
     """Time by the estimate of the task, with much to spare; memory by the setting."""
     settings = worker.settings
     with worker.database.read() as session:
-        rate = snapshot(session).rates.get(None, UNKNOWN_RATE)
+        rate = RATES.get(ticket.queue) or snapshot(session).rates.get(None, UNKNOWN_RATE)
     seconds = max(settings.task_timeout_seconds, settings.timeout_factor * rate * ticket.weight)
     return Limits(seconds, settings.task_memory_mb)
 

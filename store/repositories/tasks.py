@@ -15,6 +15,7 @@ from sqlalchemy.orm import Session, undefer
 
 from solver.results.part import Chunk
 
+from ..broker import RUNS
 from ..clock import clock, utc_now
 from ..errors import LostLeaseError
 from ..models import CANCELLED, CANCELLING, FAILED, QUEUED, RUNNING, SUCCEEDED, CaseVersion, DataSet, Run, Task
@@ -31,6 +32,7 @@ class Ticket:
     run_id: str
     attempt: int
     weight: float = 1.0
+    queue: str = RUNS
 
 
 @dataclass(frozen=True)
@@ -116,14 +118,14 @@ class TaskRepository:
                 claimed_at=now,
                 message="",
             )
-            .returning(Task.attempt, Task.weight)
+            .returning(Task.attempt, Task.weight, Task.queue)
             .execution_options(synchronize_session=False)
         ).one_or_none()
         if taken is None:
             return None
         if run.state == QUEUED:
             run.state, run.started_at = RUNNING, utc_now()
-        return Ticket(task_id, run.id, taken.attempt, taken.weight)
+        return Ticket(task_id, run.id, taken.attempt, taken.weight, taken.queue)
 
     def job(self, ticket: Ticket) -> Job:
         """What the claimed task needs to be done."""

@@ -6,14 +6,20 @@ import time
 from dataclasses import replace
 
 import pytest
+from sqlalchemy import update
 
+from store import estimate
+from store.models import Task
+from store.repositories import TaskRepository
+from store.repositories.hydrodynamics import HydrodynamicsRepository, NewJob
+from store.repositories.tasks import Ticket
 from worker import keeper
-from worker.execute import Worker, execute
+from worker.execute import Worker, _limits, execute
 from worker.keeper import Limits
 from worker.process import memory_mb
 
 from . import fake_solver
-from .test_execute import insert, look, worker
+from .test_execute import SCOPE, insert, look, worker
 
 __all__ = ["worker"]
 
@@ -57,6 +63,25 @@ def test_one_that_does_not_heed_ends_with_its_process(worker: Worker, monkeypatc
     view = look(worker, run_id)
     assert view.run.state == "failed"
     assert "memory" in str(view.run.reason)
+
+
+def test_a_hydrodynamic_job_may_take_many_times_its_own_estimate(worker: Worker) -> None:
+    """Its weight is in seconds already: how fast runs of cases went here says nothing of it."""
+    estimate._kept.clear()
+    _, (task,) = insert(worker)
+    with worker.database.write() as session:
+        session.execute(update(Task).where(Task.id == task).values(state="succeeded", seconds=0.01, weight=1.0))
+    runs = _limits(worker, Ticket("task", "run", 1, weight=3000.0)).seconds
+    assert runs == worker.settings.task_timeout_seconds  # 20 x 3000 x 0.01 s is less
+    job = _limits(worker, Ticket("task", "run", 1, weight=3000.0, queue="hydrodynamics")).seconds
+    assert job == worker.settings.timeout_factor * 3000.0
+    with worker.database.write() as session:
+        new = NewJob("barge", {}, "h" * 64, {}, weight=7.0)
+        run, _ = HydrodynamicsRepository(session, SCOPE).start(new)
+    with worker.database.write() as session:
+        ticket = TaskRepository(session).claim_next("hydrodynamics", "host/1/2", 60, 3)
+        assert ticket is not None
+        assert (ticket.run_id, ticket.weight, ticket.queue) == (run.id, 7.0, "hydrodynamics")
 
 
 def test_the_reasons() -> None:

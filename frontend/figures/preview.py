@@ -23,11 +23,16 @@ def scene(preview: dict[str, Any], tree: dict[str, Any]) -> shapes.Scene:
     return shapes.scene(channels, tree, vessel)
 
 
+def upside_down(nodes: np.ndarray) -> bool:
+    """Whether end b is the one that lies deeper."""
+    return bool(nodes[-1, 2] < nodes[0, 2])
+
+
 def touchdown(nodes: np.ndarray, arc: np.ndarray, grounded: float) -> np.ndarray | None:
     """Where a line leaves the seabed [m]; None for one that nowhere lies on it, or that lies wholly."""
     if not 0 < grounded < arc[-1]:
         return None
-    if nodes[-1, 2] < nodes[0, 2]:  # end b lies on the bed
+    if upside_down(nodes):
         grounded = arc[-1] - grounded
     return np.array([np.interp(grounded, arc, nodes[:, i]) for i in range(3)])
 
@@ -55,7 +60,7 @@ def plan(preview: dict[str, Any], tree: dict[str, Any], height: int = 460) -> Fi
     made = shapes.plan(seen, height)
     notes = []
     for index, nodes in enumerate(seen.lines.values()):
-        start, end = nodes[-1], nodes[0]
+        start, end = (nodes[0], nodes[-1]) if upside_down(nodes) else (nodes[-1], nodes[0])
         angle = math.degrees(math.atan2(end[1] - start[1], end[0] - start[0])) % 360
         side = {
             "xanchor": "left" if end[0] >= start[0] else "right",

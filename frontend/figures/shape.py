@@ -17,11 +17,11 @@ SEABED, SEA, HULL = "#c8b68f", "#8fc1de", "#495057"
 
 @dataclass(frozen=True)
 class Scene:
-    """Node positions per line [m, earth axes, z up], the depth, and the lines whose end b sits on a vessel."""
+    """Node positions per line [m, earth axes, z up], the depth, and by line which of its nodes sits on a vessel."""
 
     lines: Mapping[str, np.ndarray]
     depth: float | None
-    on_vessel: tuple[str, ...] = ()
+    on_vessel: tuple[tuple[str, int], ...] = ()
     vessel: tuple[float, float, float] | None = None
 
     @property
@@ -29,7 +29,7 @@ class Scene:
         """The fairleads in order of bearing, closed: all that the result tells of the hull's outline."""
         if not self.on_vessel:
             return None
-        ends = np.array([self.lines[name][-1] for name in self.on_vessel])
+        ends = np.array([self.lines[name][node] for name, node in self.on_vessel])
         offset = ends[:, :2] - ends[:, :2].mean(axis=0)
         ordered = ends[np.argsort(np.arctan2(offset[:, 1], offset[:, 0]))]
         return np.vstack([ordered, ordered[:1]])
@@ -45,7 +45,8 @@ def scene(channels: Mapping[str, dict[str, Any]], case: dict[str, Any] | None, p
     """From the channels `static/line/{NAME}/position` (by line name), the case and the vessel's static displacement."""
     lines = {name: np.asarray(channel["values"], dtype=float) for name, channel in channels.items()}
     described = (case or {}).get("lines") or {}
-    held = tuple(name for name in lines if _on_vessel(described.get(name) or {}))
+    ends = (("end_b", -1), ("end_a", 0))
+    held = tuple((name, node) for name in lines for end, node in ends if _on_vessel(described.get(name) or {}, end))
     depth = metres(((case or {}).get("environment") or {}).get("depth"))
     return Scene(lines, depth, held, _vessel(position, case))
 
@@ -61,8 +62,8 @@ def metres(value: Any) -> float | None:
         return None
 
 
-def _on_vessel(line: dict[str, Any]) -> bool:
-    end = line.get("end_b")
+def _on_vessel(line: dict[str, Any], which: str) -> bool:
+    end = line.get(which)
     return isinstance(end, dict) and (end.get("fairlead") is not None or end.get("kind") == "fairlead")
 
 

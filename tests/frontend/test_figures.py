@@ -104,6 +104,15 @@ def test_scene_knows_depth_and_vessel() -> None:
     assert shape.plan(made)["layout"]["yaxis"]["scaleanchor"] == "x"
 
 
+def test_fairleads_at_end_a_are_the_hull_too() -> None:
+    hulls = []
+    for end, step in (("end_b", 1), ("end_a", -1)):
+        case = {"lines": {name: {end: {"fairlead": [1, 2, 3]}} for name in results.LINES}}
+        told = {name: {**channel, "values": channel["values"][::step]} for name, channel in positions().items()}
+        hulls.append(shape.scene(told, case, None).hull)
+    np.testing.assert_array_equal(*hulls)
+
+
 def test_a_shallow_spread_is_stretched_and_says_so() -> None:
     flat = {name: {**c, "values": (np.asarray(c["values"]) * [1, 1, 0.02]).tolist()} for name, c in positions().items()}
     drawn, stretch = shape.in_space(shape.scene(flat, {"environment": {"depth": 40}}, None))

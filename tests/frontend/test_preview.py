@@ -90,6 +90,8 @@ def test_touchdown_of_a_line_whose_end_b_lies_on_the_bed() -> None:
     turned = {"arc_length": line["arc_length"], "position": line["position"][::-1]}
     points = preview.touchdowns({**SHAPE, "lines": {"a": turned}})
     assert points["a"] == pytest.approx([75, 75, -50])
+    notes = preview.plan({**SHAPE, "lines": {"a": turned}}, TREE)["layout"]["annotations"]
+    assert (notes[0]["text"], notes[0]["x"]) == ("45.0°", 100.0)
 
 
 def test_the_plan_says_azimuths_and_directions() -> None:

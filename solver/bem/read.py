@@ -20,6 +20,7 @@ from .textlines import Lines
 Array = np.ndarray
 MAX_BYTES = 32 * 1024 * 1024
 COORDINATE = 1e6  # m
+FEET = (32.0, 32.4)  # a GRAV of 32.174 ft/s2
 _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
@@ -79,7 +80,10 @@ def _read_gdf(payload: bytes, name: str) -> Panels:
     """Title; ULEN GRAV; ISX ISY; NPAN; then twelve coordinates a panel, what follows them on their line ignored."""
     lines = Lines(payload, name)
     lines.take("the title")
-    lines.floats(2, "ULEN and GRAV")
+    if FEET[0] < float(lines.floats(2, "ULEN and GRAV")[1]) < FEET[1]:
+        raise lines.fault(
+            "GRAV is that of feet, and so are the coordinates; write 9.80665 in its place and give geometry.scale: 0.3048"
+        )
     isx, isy = (lines.symmetry(value) for value in lines.integers(2, "ISX and ISY"))
     count = lines.integers(1, "the number of panels, NPAN")[0]
     if not 0 < count <= 2 * MAX_PANELS:

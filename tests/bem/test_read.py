@@ -65,6 +65,7 @@ GDF, NEMOH, MSH = as_gdf(box(size=1.0)).decode(), as_nemoh(box(size=1.0)).decode
         ("", "empty"),
         (GDF[:200], "truncated"),
         (GDF.replace("1.0 9.80665 ULEN", "1.0 nan ULEN"), "line 2: 'nan' is not a finite number"),
+        (GDF.replace("1.0 9.80665 ULEN", "1.0 32.174 ULEN"), "line 2: GRAV is that of feet"),
         (GDF.replace("0 0 ISX", "0 2 ISX"), "line 3: a symmetry is given as 2; allowed: 0 or 1"),
         (GDF.replace("ISY\n", "ISY\n-"), "line 4: NPAN is -"),
         ("t\n1 9.8\n0 0\n99999999999\n", "line 4: NPAN is 99999999999; allowed: 1 to"),

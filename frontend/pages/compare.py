@@ -222,7 +222,7 @@ def spectra(several: list[Results], names: list[str], line: str | None, domains:
     drawn = []
     wanted = {f"vessel/{dof}": dof.capitalize() for dof in DOFS}
     if line:
-        wanted[f"line/{line}/top_tension"] = f"Top tension, {line}"
+        wanted[f"line/{line}/top_tension"] = f"Tension at end b, {line}"
     for path, title in wanted.items():
         channels = {d: f"{d}/{path}" if d == "frequency" else f"{d}/{path}_spectrum" for d in domains}
         curves = _curves(several, names, channels)

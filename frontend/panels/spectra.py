@@ -1,4 +1,4 @@
-"""The seven spectra: six responses of the vessel and the top tension of one line, WF and LF apart, both domains."""
+"""The seven spectra: six responses of the vessel and the tension at end b of one line, WF and LF apart, both domains."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def render(results: Results) -> list[Any]:
     scale = results.option("scale", (key for key, _ in SCALES)) or figures.PANELS
     wanted = {f"frequency/vessel/{dof}": (dof.capitalize(), dof_unit(dof)[0]) for dof in DOFS}
     if line:
-        wanted[_top(line)] = (f"Top tension, {line}", "kN")
+        wanted[_top(line)] = (f"Tension at end b, {line}", "kN")
     found = results.channels(wanted)
     last = max((float(axis_values(channel)[-1]) for channel in found.values()), default=None)
     timed = results.channels((_timed(name) for name in wanted), to=last)

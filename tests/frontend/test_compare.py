@@ -65,7 +65,7 @@ def test_page_draws_runs_and_domains_together(
     for said in ("A: FPSO 2000 m, frequency domain", "A: FPSO 2000 m, time domain", "B: FPSO 2000 m, frequency domain"):
         assert said in text
     assert "B: FPSO 2000 m, time domain" not in text  # that run has none
-    assert "Top tension, stern-port" in text
+    assert "Tension at end b, stern-port" in text
     assert "The cases are the same." in text
     assert "σ of tension, domains side by side" in text
 

@@ -78,7 +78,7 @@ def test_the_seven_spectra(vessel_run: dict[str, Any]) -> None:
     made = panels.find("spectra").render(found)
     graphs = [part for part in components(made) if isinstance(part, dcc.Graph)]
     assert len(graphs) == 7
-    assert "Top tension, stern-port" in texts(made)
+    assert "Tension at end b, stern-port" in texts(made)
     assert found.used == {"line": "stern-port", "scale": "panels"}
 
 

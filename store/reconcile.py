@@ -60,11 +60,13 @@ class Reconciler(threading.Thread):
 
     def _sweep(self) -> None:
         database, _, settings = self._context
-        if settings.retention_days and time.monotonic() - self._swept_at > SWEEP_SECONDS:
-            self._swept_at = time.monotonic()
-            gone = retention.sweep(database, settings.retention_days, most=SWEEP_MOST)
-            if gone:
-                log.info("%d runs older than %g days deleted", gone, settings.retention_days)
+        if time.monotonic() - self._swept_at <= SWEEP_SECONDS:
+            return
+        self._swept_at = time.monotonic()
+        if not settings.retention_days:
+            retention.forget_keys(database)
+        elif gone := retention.sweep(database, settings.retention_days, most=SWEEP_MOST):
+            log.info("%d runs older than %g days deleted", gone, settings.retention_days)
 
     def stop(self) -> None:
         self._halt.set()

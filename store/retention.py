@@ -1,4 +1,7 @@
-"""Deletes ended runs after their time, a few at a time, so that nobody waits for it. Pinned runs stay."""
+"""Deletes ended runs after their time, a few at a time, so that nobody waits for it. Pinned runs stay.
+
+Keys under which requests were sent are forgotten too, whether or not runs ever are.
+"""
 
 from __future__ import annotations
 
@@ -20,8 +23,14 @@ def sweep(database: Database, days: float, dry_run: bool = False, most: int | No
     for start in range(0, len(found), BATCH):
         with database.write() as session:
             gone += QueueRepository(session).remove(found[start : start + BATCH])
-    with database.write() as session:
-        if gone:
+    if gone:
+        with database.write() as session:
             QueueRepository(session).remove_empty_studies()
-        IdempotencyRepository(session, Scope()).sweep()
+    forget_keys(database)
     return gone
+
+
+def forget_keys(database: Database) -> None:
+    """Forget the idempotency keys that nobody repeats any more."""
+    with database.write() as session:
+        IdempotencyRepository(session, Scope()).sweep()

@@ -11,12 +11,12 @@ from sqlalchemy.orm import Session
 from ..clock import utc_now
 from ..errors import ConflictError, NotFoundError
 from ..examples import bundled_hashes
-from ..models import DEFAULT_TEAM, Base, DataSet, Preview, Project, Team
+from ..models import DEFAULT_TEAM, Base, DataSet, IdempotencyKey, Preview, Project, Team
 from ..people import OWNER, Audit, Invitation, Membership, SignIn, User
 from .unique import add_unique
 
 FIRST_PROJECT = "default"
-GOES_ALONG = ("shares", "previews", "sign_ins", "audit")
+GOES_ALONG = ("shares", "previews", "sign_ins", "audit", "idempotency_keys")
 """Tables whose rows do not keep a project from being deleted; nor do the bundled data sets."""
 
 
@@ -136,7 +136,7 @@ class TeamRepository:
                 query = query.where(table.c.content_hash.not_in(bundled_hashes()))
             if held := self.session.scalar(query):
                 raise ConflictError(f"The project {project.name!r} still holds {held} {table.name}; delete them first.")
-        for model in (DataSet, Preview):
+        for model in (DataSet, IdempotencyKey, Preview):
             self.session.execute(delete(model).where(model.project_id == project.id))
         self.session.execute(update(SignIn).where(SignIn.project_id == project.id).values(project_id=None))
         self.session.delete(project)

@@ -129,6 +129,10 @@ def test_teams_and_projects_come_and_go(fresh: World) -> None:
     case = owner.post("/api/v1/cases", json=a_case("kept"), **at).json()
     assert owner.delete(f"/api/v1/projects/{project}").status_code == 409
     assert owner.delete(f"/api/v1/teams/{team}").status_code == 409
+    once = {"headers": {"Idempotency-Key": "of a client"}} | at
+    run = owner.post("/api/v1/runs", json={"case_id": case["id"]}, **once).json()
+    assert owner.post(f"/api/v1/runs/{run['id']}/cancel").status_code == 202
+    assert owner.delete(f"/api/v1/runs/{run['id']}").status_code == 204
     assert owner.delete(f"/api/v1/cases/{case['id']}").status_code == 204
     assert owner.delete(f"/api/v1/projects/{project}").status_code == 204
     assert owner.delete(f"/api/v1/teams/{team}").status_code == 204

@@ -14,7 +14,10 @@ from sqlalchemy import select, update
 from store import effective, estimate, retention
 from store.clock import utc_now
 from store.database import Database
-from store.models import Run, Task
+from store.doorbell import Doorbell
+from store.models import IdempotencyKey, Run, Task
+from store.reconcile import Reconciler
+from store.settings import Settings
 from tests.service.running import a_case
 
 Work = Callable[[], list[str]]
@@ -134,6 +137,22 @@ def test_retention_takes_the_old_and_leaves_the_pinned(client: TestClient, work:
     assert {run["id"] for run in client.get("/api/v1/runs").json()["items"]} == {kept["id"], waiting["id"]}
     assert client.get("/api/v1/studies").json()["items"] == []
     assert client.get(f"/api/v1/runs/{old['id']}").status_code == 404
+
+
+def test_keys_are_forgotten_where_runs_are_kept_for_good(
+    client: TestClient, database: Database, service_settings: Settings
+) -> None:
+    assert service_settings.retention_days == 0
+    for key in ("long ago", "today"):
+        client.post("/api/v1/runs", json={"case": a_case(key)}, headers={"Idempotency-Key": key})
+    with database.write() as session:
+        old = update(IdempotencyKey).where(IdempotencyKey.key == "long ago")
+        session.execute(old.values(created_at=utc_now() - timedelta(days=3)))
+    doorbell = Doorbell(service_settings)
+    Reconciler(database, doorbell, service_settings)._sweep()
+    doorbell.close()
+    with database.read() as session:
+        assert session.scalars(select(IdempotencyKey.key)).all() == ["today"]
 
 
 def test_the_estimate_of_the_time_left() -> None:

@@ -9,7 +9,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import undefer
 
 from ..errors import ConflictError
-from ..models import Case, CaseVersion, Run
+from ..models import Case, CaseVersion, Run, Study
 from .scoped import Scoped
 
 
@@ -66,9 +66,10 @@ class CaseRepository(Scoped):
 
     def delete(self, key: str) -> None:
         version = self.get(key)
-        runs = self.session.scalar(select(func.count()).select_from(Run).where(Run.case_version_id == key))
-        if runs:
-            raise ConflictError(f"{runs} run(s) refer to this case; delete them first.")
+        for model, what in ((Run, "run(s)"), (Study, "study(ies)")):  # a study may have lost its runs one by one
+            count = self.session.scalar(select(func.count()).select_from(model).where(model.case_version_id == key))
+            if count:
+                raise ConflictError(f"{count} {what} refer to this case; delete them first.")
         self.session.delete(version)
         self.session.flush()
         left = self.session.scalar(

@@ -155,6 +155,20 @@ def test_keys_are_forgotten_where_runs_are_kept_for_good(
         assert session.scalars(select(IdempotencyKey.key)).all() == ["today"]
 
 
+def test_a_case_stays_while_a_study_without_runs_refers_to_it(client: TestClient, work: Work) -> None:
+    study = client.post("/api/v1/studies", json={"case": a_case("study"), "grid": {EA: [1e8]}}).json()
+    work()
+    for run in client.get(f"/api/v1/studies/{study['id']}/runs").json()["items"]:
+        assert client.delete(f"/api/v1/runs/{run['id']}").status_code == 204
+    refused = client.delete(f"/api/v1/cases/{study['case_id']}")
+    assert (refused.status_code, refused.json()["detail"]) == (
+        409,
+        "1 study(ies) refer to this case; delete them first.",
+    )
+    assert client.delete(f"/api/v1/studies/{study['id']}").status_code == 204
+    assert client.delete(f"/api/v1/cases/{study['case_id']}").status_code == 204
+
+
 def test_the_estimate_of_the_time_left() -> None:
     waiting = [(10, "a"), (20, "b"), (30, "c"), (30, "d")]
     queue = estimate.Snapshot(0.0, {None: 2.0, "study": 0.5}, waiting, [0.0, 1.0, 3.0, 4.0, 8.0], workers=2)

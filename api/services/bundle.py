@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from datetime import datetime
 from typing import IO, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from store.clock import utc_now
 from store.effective import solver_version, stored_case
@@ -34,6 +34,14 @@ MAX_CHANNELS = 20_000
 
 class Strict(BaseModel):
     model_config = ConfigDict(extra="forbid")
+
+    @field_validator("*")
+    @classmethod
+    def _no_null_byte(cls, value: Any) -> Any:
+        """PostgreSQL takes none in a text."""
+        if isinstance(value, str) and "\0" in value:
+            raise ValueError("holds a null byte")
+        return value
 
 
 class Entry(Strict):

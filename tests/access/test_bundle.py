@@ -192,6 +192,15 @@ def test_hashes_that_fit_a_forgery(world: World, bundle: bytes) -> None:
     assert_refused(world, relabelled(files, lambda m: m["channels"][0].update(shape=[10**9, 10**9])), "channels/")
 
 
+@pytest.mark.parametrize("place", ["reason", "solver_version", "description", "band"])
+def test_null_bytes_which_not_every_database_takes(world: World, bundle: bytes, place: str) -> None:
+    def change(manifest: dict[str, Any]) -> None:
+        part = manifest["run"] if place in manifest["run"] else manifest["channels"][0]
+        part[place] = "a\0b"
+
+    assert_refused(world, relabelled(unpacked(bundle), change), "manifest.json")
+
+
 @contextmanager
 def limit(world: World, size: int) -> Iterator[None]:
     """What may come in."""

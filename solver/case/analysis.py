@@ -117,7 +117,7 @@ class Analyses(Part):
     frequency_domain: FrequencyDomain | None = None
     """Spectra of coupled motion and tension, or amplitudes of a harmonic case."""
     time_domain: TimeDomain | None = None
-    """Realisations in time. Not part of this version: the case is accepted and the analysis reported as failed."""
+    """Nonlinear realisations in time: independent seeds of the sea, from rest in the static position."""
     modes: Modes | None = None
     """Natural modes and the coefficients the lines lend the vessel."""
 

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from datetime import timedelta
 from typing import IO, Any
 
+import numpy as np
 from pydantic import ValidationError
 
 from solver.case import Case, load_case, parse_case
@@ -46,6 +47,9 @@ class Archive:
         self._infos = self._listed(limit)
         self.manifest = self._manifest()
         missing = sorted(set(self.manifest.files) - set(self._infos))[:3]
+        names = [listed.name for listed in self.manifest.channels]
+        if len(set(names)) < len(names):
+            raise _fault(MANIFEST, "names a channel twice")
         extra = sorted(set(self._infos) - set(self.manifest.files) - {MANIFEST})[:3]
         if missing or extra:
             raise _fault(MANIFEST, f"does not fit the archive: missing {missing}, not named {extra}")
@@ -190,10 +194,13 @@ def _channel(archive: Archive, listed: Listed) -> ChannelRow:
         sizes = [int(axis["size"]) for axis in listed.axes]
         if sizes != listed.shape or any(axis.keys() - AXIS for axis in listed.axes):
             raise ValueError("its axes are not those of its shape")
-        decode(
+        numbers = [axis.get(key, 0.0) for axis in listed.axes for key in ("first", "last", "step")]
+        channel = decode(
             Encoded(listed.codec, tuple(listed.shape), listed.axes, payload, axes_payload),
             listed.name, listed.unit, listed.description, listed.band,
         )  # fmt: skip
+        if not all(np.isfinite(each).all() for each in [np.asarray(numbers), *(axis.values for axis in channel.axes)]):
+            raise ValueError("not every number of its axes is finite")
     except Exception as error:  # whatever bytes that are no array bring, from zstandard, NumPy or a dictionary
         raise _fault(listed.values, f"is no channel {listed.name!r}: {error}"[:300]) from None
     shown = listed.model_dump(include={"name", "unit", "description", "band", "axes", "shape", "codec"})

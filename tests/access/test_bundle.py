@@ -12,10 +12,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from sqlalchemy import func, select
 from sqlalchemy.orm import undefer
 
+from store.arrays import encode_values
 from store.models import CaseVersion, ChannelRow, DataSet, Run
 from tests.access.conftest import World
 
@@ -199,6 +201,23 @@ def test_null_bytes_which_not_every_database_takes(world: World, bundle: bytes, 
         part[place] = "a\0b"
 
     assert_refused(world, relabelled(unpacked(bundle), change), "manifest.json")
+
+
+def test_channels_that_cannot_be_shown(world: World, bundle: bytes) -> None:
+    """One name twice; a number that is none, among the values or on an axis."""
+    files = unpacked(bundle)
+    twice = relabelled(files, lambda m: m["channels"].append(m["channels"][0]))
+    assert_refused(world, twice, "manifest.json")
+    values = first_channel(files)
+    listed = next(each for each in json.loads(files["manifest.json"])["channels"] if each["values"] == values)
+    bad = encode_values(np.full(listed["shape"], np.nan), listed["codec"])
+    assert_refused(world, relabelled(files | {values: bad}, lambda _: None), values)
+
+    def unbounded(manifest: dict[str, Any]) -> None:
+        axis = next(each for each in manifest["channels"] if each["values"] == values)["axes"][0]
+        axis["last"] = float("inf")
+
+    assert_refused(world, relabelled(files, unbounded), values)
 
 
 @contextmanager

@@ -7,6 +7,7 @@ import os
 import shutil
 import signal
 import subprocess
+import tempfile
 import time
 import uuid
 from collections.abc import Callable, Iterator
@@ -83,6 +84,14 @@ class Rig:
     def clock_file(self) -> Path:
         """Seconds by which every Python process of the service has its clock put forward."""
         return self.root / "clock"
+
+
+@contextlib.contextmanager
+def _open_folder() -> Iterator[str]:
+    """A folder that another user may enter, as PostgreSQL's must: a test's own folder is closed to all but its user."""
+    with tempfile.TemporaryDirectory(prefix="slowdrift-rig-", ignore_cleanup_errors=True) as name:
+        os.chmod(name, 0o755)
+        yield name
 
 
 def _postgres(folder: Path) -> tuple[Server, str]:
@@ -208,7 +217,8 @@ def rig(kind: str, root: Path, on_small_disk: bool = False, **settings: Any) -> 
         }
         made = Rig(kind, root, Settings(), disk=place if on_small_disk else None)
         if kind != "embedded":
-            made.postgres, given["database_url"] = _postgres(place / "postgres")
+            home = place if on_small_disk else Path(stack.enter_context(_open_folder()))
+            made.postgres, given["database_url"] = _postgres(home / "postgres")
             make = _redis if kind == "postgres-redis" else _rabbitmq
             made.broker, given["broker_url"] = make(root / "broker")
             for server in (made.postgres, made.broker):

@@ -12,7 +12,7 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi_problem.error import Problem, StatusProblem
 from fastapi_problem.handler import ExceptionHandler, add_exception_handler, new_exception_handler
-from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
+from sqlalchemy.exc import DBAPIError, IntegrityError, InterfaceError, OperationalError
 
 from solver.outcome import CaseError, DataError, FieldError, NotConverged, SlowdriftError
 from store.errors import (
@@ -70,6 +70,13 @@ def _away(_: ExceptionHandler, __: Request, error: DBAPIError) -> Problem:
     return Problem("A part of the service is not available.", type_="unavailable", detail=detail, status=503)
 
 
+def _clash(_: ExceptionHandler, __: Request, error: IntegrityError) -> Problem:
+    """What was looked up before the change is another by now: removed, or made by somebody else."""
+    log.warning("Two requests clashed: %s", error.orig)
+    detail = "Another request changed the same thing at the same time; nothing was changed. Try again."
+    return Problem("The present state does not allow this.", type_="conflict", detail=detail, status=409)
+
+
 def _status(status: int, kind: str, title: str) -> Any:
     def handle(_: ExceptionHandler, __: Request, error: SlowdriftError) -> Problem:
         return Problem(title, type_=kind, detail=str(error), status=status)
@@ -100,6 +107,7 @@ def install(app: FastAPI) -> None:
         TooSlowError: _status(504, "too-slow", "The answer did not come in time."),
         OperationalError: _away,
         InterfaceError: _away,
+        IntegrityError: _clash,
         UnavailableError: _status(503, "unavailable", "A part of the service is not available."),
     }
     handler = new_exception_handler(
@@ -108,5 +116,5 @@ def install(app: FastAPI) -> None:
         request_validation_handler=_request,
     )
     add_exception_handler(app, handler, generic_swagger_defaults=False)
-    for kind in (SlowdriftError, OperationalError, InterfaceError):
+    for kind in (SlowdriftError, OperationalError, InterfaceError, IntegrityError):
         app.add_exception_handler(kind, handler)

@@ -56,7 +56,7 @@ def export_bundle(context: ContextDep, scope: ScopeDep, run_id: Key) -> Streamin
 @router.post(
     "/imports/run",
     status_code=201,
-    responses={200: {"model": RunInfo, "description": "This very run is here already."}, **problems(422)},
+    responses={200: {"model": RunInfo, "description": "This very run is here already."}, **problems(409, 422)},
     openapi_extra=_BODY,
     max_body_size=UPLOAD_BYTES,
 )

@@ -19,6 +19,7 @@ from sqlalchemy.orm import undefer
 
 from store.arrays import encode_values
 from store.models import CaseVersion, ChannelRow, DataSet, Run
+from store.repositories.imports import ImportRepository
 from tests.access.conftest import World
 
 URL = "/api/v1/imports/run"
@@ -218,6 +219,19 @@ def test_channels_that_cannot_be_shown(world: World, bundle: bytes) -> None:
         axis["last"] = float("inf")
 
     assert_refused(world, relabelled(files, unbounded), values)
+
+
+def test_the_same_file_twice_at_once(world: World, bundle: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The second looked before the first was stored: it is told to try again, and leaves nothing behind."""
+    there = world.signed_in("stranger")
+    assert there.post(URL, content=bundle).status_code in (200, 201)
+    before = stored(world)
+    with monkeypatch.context() as patched:
+        patched.setattr(ImportRepository, "known", lambda *_: None)
+        clash = there.post(URL, content=bundle)
+    assert (clash.status_code, clash.json()["type"]) == (409, "conflict"), clash.text
+    assert stored(world) == before
+    assert there.post(URL, content=bundle).status_code == 200
 
 
 @contextmanager

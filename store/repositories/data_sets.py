@@ -11,6 +11,9 @@ from ..errors import ConflictError, NotFoundError
 from ..models import DataSet, Run
 from .scoped import Scoped
 
+TRIES = 5
+"""At a version number, which another upload of the same name may take first."""
+
 
 class DataSetRepository(Scoped):
     def save(
@@ -21,10 +24,19 @@ class DataSetRepository(Scoped):
         known = self.session.scalars(same).one_or_none()
         if known is not None:
             return known, False
+        for _ in range(TRIES - 1):
+            try:
+                return self._add_or_find(self._next(name, filename, content_hash, payload, summary), same)
+            except ConflictError:  # another request took the number
+                continue
+        return self._add_or_find(self._next(name, filename, content_hash, payload, summary), same)
+
+    def _next(self, name: str, filename: str, content_hash: str, payload: bytes, summary: dict[str, Any]) -> DataSet:
+        """A row of the version that follows the last of this name."""
         last = self.session.scalar(
             select(func.max(DataSet.version)).where(DataSet.project_id == self.scope.project_id, DataSet.name == name)
         )
-        row = DataSet(
+        return DataSet(
             project_id=self.scope.project_id,
             name=name,
             version=(last or 0) + 1,
@@ -34,7 +46,6 @@ class DataSetRepository(Scoped):
             summary=summary,
             payload=payload,
         )
-        return self._add_or_find(row, same)
 
     def get(self, key: str) -> DataSet:
         return self._one(DataSet, key, "data set")

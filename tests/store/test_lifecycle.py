@@ -13,7 +13,14 @@ from solver.results.part import Chunk
 from store.database import Database
 from store.errors import ConflictError, LostLeaseError, NotFoundError
 from store.models import Run
-from store.repositories import CaseRepository, ChannelRepository, RecoveryRepository, RunRepository, TaskRepository
+from store.repositories import (
+    CaseRepository,
+    ChannelRepository,
+    DataSetRepository,
+    RecoveryRepository,
+    RunRepository,
+    TaskRepository,
+)
 from store.repositories.cases import NewCase
 from store.repositories.tasks import Outcome, Ticket
 from store.scope import Scope
@@ -171,6 +178,24 @@ def test_the_last_at_work_hands_in_after_a_cancel(
     with database.write() as session:
         assert not TaskRepository(session).hand_in(ticket, b"part")
     assert state(database, run_id) == "cancelled"
+
+
+def test_two_data_sets_of_one_name_at_once_are_two_versions(database: Database) -> None:
+    """The result of a long hydrodynamic job is not lost because somebody uploads under its name."""
+
+    def save(content: str) -> None:
+        with database.write() as session:
+            row, _ = DataSetRepository(session, SCOPE).save("barge", "barge.nc", content * 64, b"", {})
+            versions[content] = row.version
+
+    versions: dict[str, int] = {}
+    second = threading.Thread(target=save, args=("b",))
+    with database.write() as session:
+        versions["a"] = DataSetRepository(session, SCOPE).save("barge", "barge.nc", "a" * 64, b"", {})[0].version
+        second.start()
+        second.join(0.3)
+    second.join(10)
+    assert versions == {"a": 1, "b": 2}
 
 
 def test_recovery(database: Database, make: Callable[..., tuple[str, list[str]]]) -> None:

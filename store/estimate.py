@@ -19,7 +19,7 @@ from sqlalchemy.orm import Session
 
 from .broker import RUNS
 from .clock import clock
-from .models import QUEUED, RUNNING, SUCCEEDED, Run, Task
+from .models import HYDRODYNAMICS, QUEUED, RUNNING, SUCCEEDED, Run, Task
 
 FRESH_SECONDS = 2.0
 RECENT, WAITING = 200, 50_000
@@ -47,7 +47,7 @@ class Snapshot:
 
     taken_at: float = -math.inf
     rates: dict[str | None, float] = field(default_factory=dict)
-    """Seconds per weight, of each study and (None) of all."""
+    """Seconds per weight, of each study, of hydrodynamic jobs (whose weights are seconds) and (None) of all others."""
     waiting: list[tuple[int, str]] = field(default_factory=list)
     before: list[float] = field(default_factory=lambda: [0.0])
     """Weight of the tasks before each of `waiting`."""
@@ -110,7 +110,8 @@ def _take(session: Session) -> Snapshot:
             spent[key][0] += seconds or 0.0
             spent[key][1] += weight
     made.rates = {key: seconds / weight for key, (seconds, weight) in spent.items() if weight > 0}
-    waiting = select(Task.priority, Task.id, Task.weight).where(Task.state == QUEUED)
+    made.rates[HYDRODYNAMICS] = 1.0
+    waiting = select(Task.priority, Task.id, Task.weight).where(Task.queue == RUNS, Task.state == QUEUED)
     rows = session.execute(waiting.order_by(Task.priority, Task.id).limit(WAITING)).all()
     made.waiting = [(row.priority, row.id) for row in rows]
     made.before = [0.0, *accumulate(row.weight for row in rows)]

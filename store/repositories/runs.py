@@ -16,7 +16,20 @@ from ..effective import identity
 from ..errors import ConflictError, NotFoundError
 from ..estimate import Amount, Snapshot, snapshot
 from ..filters import RunFilter
-from ..models import ACTIVE, CANCELLED, CANCELLING, FINAL, QUEUED, RUNNING, SUCCEEDED, CaseVersion, DataSet, Run, Task
+from ..models import (
+    ACTIVE,
+    CANCELLED,
+    CANCELLING,
+    FINAL,
+    HYDRODYNAMICS,
+    QUEUED,
+    RUNNING,
+    SUCCEEDED,
+    CaseVersion,
+    DataSet,
+    Run,
+    Task,
+)  # fmt: skip
 from ..people import User
 from ..priority import NORMAL, by_size, doors
 from .scoped import Scoped
@@ -234,7 +247,8 @@ def _view(run: Run, sums: Any, queue: Snapshot, names: dict[str, str]) -> RunVie
     progress = 1.0 if run.state == SUCCEEDED else min(1.0, done / sums.total if sums.total else 0.0)
     left = None
     if run.state in ACTIVE:
-        first = None if sums.first is None else (sums.priority, sums.first)
+        apart = run.kind == HYDRODYNAMICS  # with workers of their own: what waits for the others is not before it
+        first = None if sums.first is None or apart else (sums.priority, sums.first)
         amount = Amount(sums.total, done, sums.at_work, sums.tasks, float(sums.seconds or 0.0), first)
-        left = queue.left(amount, run.study_id)
+        left = queue.left(amount, HYDRODYNAMICS if apart else run.study_id)
     return RunView(run, progress, sums.message or "", sums.attempt, sums.priority, left, who)

@@ -78,6 +78,11 @@ def test_a_hydrodynamic_job_may_take_many_times_its_own_estimate(worker: Worker)
     with worker.database.write() as session:
         new = NewJob("barge", {}, "h" * 64, {}, weight=7.0)
         run, _ = HydrodynamicsRepository(session, SCOPE).start(new)
+    insert(worker)
+    estimate._kept.clear()
+    with worker.database.read() as session:
+        assert HydrodynamicsRepository(session, SCOPE).job(run.id).view.seconds_left == 7.0
+        assert estimate.snapshot(session).before[-1] == 1.0  # of cases only
     with worker.database.write() as session:
         ticket = TaskRepository(session).claim_next("hydrodynamics", "host/1/2", 60, 3)
         assert ticket is not None

@@ -267,6 +267,21 @@ def test_bidirectional_pairs():
         found.at(m, n, 0.0, np.radians(80))
 
 
+def test_a_pair_of_headings_both_ways_round():
+    """Once more with the headings swapped: the conjugate is the same data, anything else a contradiction."""
+    qtf = sets.qtf([0.5, 0.8, 1.1], np.radians([0, 40]), cross=((0, 1),))
+    files = sets.files(dataclasses.replace(sets.whole(), qtf=qtf))
+    name = next(name for name in files if name.endswith(".12d"))
+    once = files[name].decode()
+    crossed = [row for row in map(str.split, once.splitlines()) if len(row) == 9 and row[2] != row[3]]
+    twins = [f"{r[1]} {r[0]} {r[3]} {r[2]} {r[4]} {r[5]} 0 {r[7]} {-float(r[8]):.9e}" for r in crossed]
+    found = read_wamit(files | {name: (once + "\n".join(twins)).encode()}, sets.OPTIONS).qtf
+    assert np.allclose(found.cross[0, 1], read_wamit(files, sets.OPTIONS).qtf.cross[0, 1])
+    twins = [f"{r[1]} {r[0]} {r[3]} {r[2]} {r[4]} {r[5]} 0 {r[7]} {r[8]}" for r in crossed]
+    with pytest.raises(DataError, match="both ways round"):
+        read_wamit(files | {name: (once + "\n".join(twins)).encode()}, sets.OPTIONS)
+
+
 def test_drift_of_two_directions_takes_the_pairs_of_headings():
     data = dataclasses.replace(sets.whole(), qtf=sets.qtf([0.5, 0.8, 1.1], np.radians([0, 40, 80]), cross=((0, 1),)))
     drift, m, n = Drift(data, "qtf", np.radians(10)), np.array([1.1]), np.array([0.5])

@@ -6,7 +6,7 @@ import numpy as np
 
 from ....case.quantities import DOF
 from ....outcome import DataError
-from ..qtf import QTF
+from ..qtf import HERMITIAN, QTF
 from .axis import Frequencies, first_listed, frequencies, headings, match, shown, span
 from .first import positions
 from .text import Array, Table, magnitude_agrees, place, whole
@@ -139,12 +139,27 @@ def _assemble(
         if a != b and a in place_of and b in place_of and (place_of[a], place_of[b]) not in cross:
             other = found.get((b, a))
             if other is not None:
-                values = np.where(np.isnan(values), np.conj(other.transpose(1, 0, 2)), values)
+                twin = np.conj(other.transpose(1, 0, 2))
+                _twins_agree(values, twin, table, angles[[a, b]])
+                values = np.where(np.isnan(values), twin, values)
             low, high = sorted((a, b))
             part = values if a < b else np.conj(values.transpose(1, 0, 2))
             _band(~np.isnan(part[:, :, 0]), omega, table)
             cross[place_of[low], place_of[high]] = part * factor
     return QTF(omega, angles[single], np.array(full), table.name, cross)
+
+
+def _twins_agree(values: Array, twin: Array, table: Table, angles: Array) -> None:
+    """Raises DataError where a pair of headings is there both ways round and the two are not each other's conjugate."""
+    both = ~np.isnan(values) & ~np.isnan(twin)
+    size, gap = np.where(both, np.abs(values), 0.0).max(axis=(0, 1)), np.where(both, np.abs(values - twin), 0.0)
+    size = np.repeat(size.reshape(2, 3).max(axis=1), 3)  # what vanishes by symmetry is round-off of the others
+    if np.any(gap > HERMITIAN * size):
+        first, second = np.degrees(angles)
+        raise DataError(
+            f"{table.name}: the headings {first:g}, {second:g} deg are there both ways round and contradict each other "
+            f"by more than {100 * HERMITIAN:g} % of the largest, T2(m, n) = T2(n, m)*; leave one of the two out"
+        )
 
 
 def _band(known: Array, omega: Array, table: Table) -> None:

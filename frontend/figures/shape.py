@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from frontend.editor.pattern import degrees
+from frontend.editor.text import EditError
 from frontend.figures.base import Figure, axis, figure, note, titled
 from frontend.theme import BLUE, CYCLE, GRID, INK, PAPER, YELLOW
 
@@ -72,8 +75,17 @@ def _vessel(position: list[float] | None, case: dict[str, Any] | None) -> tuple[
     if not vessel:
         return None
     centre = [metres(part) or 0.0 for part in vessel.get("centre_of_gravity") or (0, 0, 0)]
-    moved = position or [0.0] * 6
-    return (centre[0] + moved[0], centre[1] + moved[1], centre[2] + moved[2])
+    x, y, z = (at + by for at, by in zip(centre, (position or [0.0] * 6)[:3], strict=True))
+    turn = _heading(vessel.get("heading"))  # both go along the vessel's axes in the design position
+    return (math.cos(turn) * x - math.sin(turn) * y, math.sin(turn) * x + math.cos(turn) * y, z)
+
+
+def _heading(value: Any) -> float:
+    """[rad]; zero where there is none, or nothing that can be read yet."""
+    try:
+        return math.radians(degrees(value, "heading")) if value else 0.0
+    except EditError:
+        return 0.0
 
 
 def in_space(made: Scene, height: int = 520) -> tuple[Figure, float]:

@@ -104,6 +104,13 @@ def test_scene_knows_depth_and_vessel() -> None:
     assert shape.plan(made)["layout"]["yaxis"]["scaleanchor"] == "x"
 
 
+def test_the_vessel_lies_where_its_heading_turns_it() -> None:
+    case = {"vessel": {"centre_of_gravity": [10, 0, 5], "heading": "90 deg"}}
+    assert shape.scene(positions(), case, [2.0, 3.0, 0, 0, 0, 0]).vessel == pytest.approx((-3.0, 12.0, 5.0))
+    case["vessel"]["heading"] = "90 d"  # somebody is still writing
+    assert shape.scene(positions(), case, None).vessel == (10.0, 0.0, 5.0)
+
+
 def test_fairleads_at_end_a_are_the_hull_too() -> None:
     hulls = []
     for end, step in (("end_b", 1), ("end_a", -1)):

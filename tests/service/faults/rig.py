@@ -40,6 +40,8 @@ class Server:
     ready: Callable[[], bool]
     environment: dict[str, str] = field(default_factory=dict)
     prepare: Callable[[], None] = lambda: None
+    user: dict[str, Any] = field(default_factory=dict)
+    """For `subprocess`: whose process it is, where not ours."""
     process: subprocess.Popen[bytes] | None = None
 
     def start(self) -> None:
@@ -47,7 +49,7 @@ class Server:
         self.prepare()
         log = (self.folder.parent / f"{self.name}.log").open("ab")
         self.process = subprocess.Popen(
-            self.command, env=os.environ | self.environment, stdout=log, stderr=log, start_new_session=True
+            self.command, env=os.environ | self.environment, stdout=log, stderr=log, start_new_session=True, **self.user
         )
         deadline = time.monotonic() + 60
         while not self.ready():
@@ -99,16 +101,16 @@ def _postgres(folder: Path) -> tuple[Server, str]:
         raise MissingError("no PostgreSQL server is installed here")
     port = free_port()
     url = f"postgresql+psycopg://postgres@127.0.0.1:{port}/postgres"
-    as_user = ["runuser", "-u", "postgres", "--"] if os.getuid() == 0 else []
+    user = {"user": "postgres", "group": "postgres", "extra_groups": []} if os.getuid() == 0 else {}  # never as root
 
     def prepare() -> None:
         if (folder / "PG_VERSION").exists():
             (folder / "postmaster.pid").unlink(missing_ok=True)
             return
-        if as_user:
+        if user:
             shutil.chown(folder, "postgres")
-        initdb = [*as_user, str(POSTGRES_BIN / "initdb"), "-A", "trust", "-U", "postgres", "-N", "-D", str(folder)]
-        subprocess.run(initdb, check=True, capture_output=True, cwd="/")
+        initdb = [str(POSTGRES_BIN / "initdb"), "-A", "trust", "-U", "postgres", "-N", "-D", str(folder)]
+        subprocess.run(initdb, check=True, capture_output=True, cwd="/", **user)
         with (folder / "postgresql.conf").open("a") as file:
             file.write(
                 f"port={port}\nlisten_addresses='127.0.0.1'\nunix_socket_directories=''\nmax_connections=200\n"
@@ -126,8 +128,8 @@ def _postgres(folder: Path) -> tuple[Server, str]:
             engine.dispose()
         return True
 
-    command = [*as_user, str(POSTGRES_BIN / "postgres"), "-D", str(folder)]
-    return Server("postgres", command, folder, ready, prepare=prepare), url
+    command = [str(POSTGRES_BIN / "postgres"), "-D", str(folder)]
+    return Server("postgres", command, folder, ready, prepare=prepare, user=user), url
 
 
 def _redis(folder: Path) -> tuple[Server, str]:

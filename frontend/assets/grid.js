@@ -16,7 +16,7 @@
   /* What a cell depends on, so that the grid draws it again when any of it changes. */
   functions.runName = ({ data }) => [data.name || data.case_name, data.pinned ? "pinned" : "", ...(data.tags || [])].filter(Boolean).join(", ");
   functions.runProgress = ({ data }) => [data.state, data.progress, data.eta_seconds, data.message].join(" ");
-  functions.runAnalyses = (params) => (params.value || []).map((name) => name.replace(/_/g, " ")).join(", ");
+  functions.runAnalyses = ({ data }) => (data.analyses || []).map((name) => name.replace(/_/g, " ")).join(", ");
   /* The reader's own clock, the order of the parts that nobody can misread. */
   functions.runMoment = (params) => {
     if (!params.value) return "–";
@@ -38,12 +38,14 @@
   };
   /* Which columns there is room for: again with new rows and with each new width of the window. */
   const FROM = { analyses: 1080, created_by: 1180, duration: 940, created_at: 700 };
+  let fitted = {}; // the grid and the width that the columns were chosen for: choosing again draws every cell anew
   async function fit() {
     const box = document.getElementById("runs-grid");
     if (!box || !window.dash_ag_grid) return;
     const api = await window.dash_ag_grid.getApiAsync("runs-grid");
     const width = box.clientWidth;
-    if (!width || api.isDestroyed()) return;
+    if (!width || api.isDestroyed() || (fitted.api === api && fitted.width === width)) return;
+    fitted = { api, width };
     for (const [column, least] of Object.entries(FROM)) api.setColumnsVisible([column], width >= least);
     const small = width < 480;
     api.setColumnWidths([{ key: "state", newWidth: small ? 112 : 210 }, { key: "action", newWidth: small ? 92 : 262 }]);
@@ -66,6 +68,16 @@
     return JSON.stringify(chosen) === JSON.stringify(before) ? window.dash_clientside.no_update : chosen;
   }
 
+  /* Which page of the list to show; the first one of other filters. */
+  function turnPage(newer, older, chosen, at, trail) {
+    const asked = window.dash_clientside.callback_context.triggered.map((one) => one.prop_id.split(".")[0]);
+    let to = at;
+    if (asked.includes("runs-filters")) to = 0;
+    else if (asked.includes("runs-newer")) to = Math.max(0, at - 1);
+    else if (asked.includes("runs-older") && at + 1 < trail.length) to = at + 1;
+    return to === at ? window.dash_clientside.no_update : to;
+  }
+
   const ended = (rows) => (rows || []).filter((run) => run.state === "succeeded" && run.kind !== "hydrodynamics");
   const comparable = (rows) => {
     const count = ended(rows).length;
@@ -83,7 +95,7 @@
 
   window.dash_clientside = window.dash_clientside || {};
   window.dash_clientside.slowdrift = Object.assign(window.dash_clientside.slowdrift || {}, {
-    filters, comparable, compareRuns,
+    filters, turnPage, comparable, compareRuns,
     fitRuns: () => {
       setTimeout(fit, 0);
       return Date.now();

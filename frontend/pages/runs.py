@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import dash_mantine_components as dmc
-from dash import ClientsideFunction, Dash, Input, Output, State, ctx, html, no_update
+from dash import ClientsideFunction, Dash, Input, Output, State, html, no_update
 
 from frontend.client import attempt, client
 from frontend.components.links import button_link
@@ -74,6 +74,16 @@ def register(app: Dash) -> None:
         State("prefix", "data"),
         prevent_initial_call=True,
     )
+    app.clientside_callback(
+        live("slowdrift", "turnPage"),
+        Output("runs-at", "data"),
+        Input("runs-newer", "n_clicks"),
+        Input("runs-older", "n_clicks"),
+        Input("runs-filters", "data"),
+        State("runs-at", "data"),
+        State("runs-trail", "data"),
+        prevent_initial_call=True,
+    )
     app.callback(
         Output("runs-grid", "rowData"),
         Output("runs-trail", "data"),
@@ -85,8 +95,7 @@ def register(app: Dash) -> None:
         Output("runs-error", "children"),
         Input("runs-refresh", "data"),
         Input("runs-filters", "data"),
-        Input("runs-newer", "n_clicks"),
-        Input("runs-older", "n_clicks"),
+        Input("runs-at", "data"),
         State("runs-trail", "data"),
     )(show)
     runs_actions.register(app)
@@ -103,24 +112,20 @@ FIELDS = (
 )
 
 
-def show(
-    _refresh: int, chosen: dict[str, Any] | None, _newer: int | None, _older: int | None, trail: list[str | None]
-) -> tuple[Any, ...]:
-    """One page. `trail` holds the cursors walked so far: the last one is this page's, and one more leads on."""
-    asked = ctx.triggered_id
-    if asked == "runs-filters":
-        trail = [None]
-    elif asked == "runs-newer" and len(trail) > 2:
-        trail = trail[:-2]
-    elif asked != "runs-older" and len(trail) > 1:
-        trail = trail[:-1]
+def show(_refresh: int, chosen: dict[str, Any] | None, at: int, trail: list[str | None]) -> tuple[Any, ...]:
+    """Page number `at`. `trail` holds the cursors of the pages walked so far, and of one more where there is one.
+
+    The number is kept apart from what the service answers: an answer may be dropped for a newer question's, as when new
+    runs come in while one turns the page.
+    """
+    here = [None] if at == 0 else trail[: at + 1]
     wanted = runs_grid.asked(chosen or {})
-    page, error = attempt(lambda: client().get("/runs", limit=runs_grid.PAGE_SIZE, cursor=trail[-1], **wanted))
+    page, error = attempt(lambda: client().get("/runs", limit=runs_grid.PAGE_SIZE, cursor=here[-1], **wanted))
     if error:
         return no_update, no_update, "", True, True, None, {"display": "none"}, refusal(error)
     items, following = page["items"], page.get("next_cursor")
-    first = len(trail) == 1
-    walked = [*trail, following]  # always one longer than the pages shown
+    first = len(here) == 1
+    walked = [*here, following] if following else here
     hint = None if items or not first else runs_grid.nothing(chosen or {})
     style = {"display": "none"} if hint else {}
     return items, walked, runs_grid.count(page.get("total"), len(items)), first, following is None, hint, style, None

@@ -22,8 +22,8 @@ COLUMNS: list[dict[str, Any]] = [
      "cellRenderer": "RunLink", "flex": 3, "minWidth": 130, "cellClass": "sd-wrap"},
     {"colId": "state", "valueGetter": {"function": "runProgress(params)"}, "headerName": "State",
      "cellRenderer": "RunState", "width": 210, "minWidth": 110},
-    {"field": "analyses", "headerName": "Analyses", "valueFormatter": {"function": "runAnalyses(params)"}, "flex": 1,
-     "minWidth": 150, "tooltipValueGetter": {"function": "runAnalyses(params)"}},
+    {"colId": "analyses", "headerName": "Analyses", "valueGetter": {"function": "runAnalyses(params)"}, "flex": 1,
+     "minWidth": 150, "tooltipValueGetter": {"function": "params.value"}},
     {"field": "created_by", "headerName": "Who", "width": 120, "valueFormatter": {"function": "params.value || '–'"}},
     {"field": "created_at", "headerName": "Created", "valueFormatter": {"function": "runMoment(params)"}, "width": 188},
     {"colId": "duration", "headerName": "Duration", "valueGetter": {"function": "runSeconds(params)"},
@@ -95,6 +95,7 @@ def grid() -> list[Any]:
                 "headerCheckbox": False,
                 "enableClickSelection": False,
             },
+            "selectionColumnDef": {"field": "nothing"},  # without a field its cells are drawn anew with any new rows
         },
         style={"width": "100%"},
     )
@@ -172,6 +173,7 @@ def rename() -> dmc.Modal:
 def stores(chosen: dict[str, Any]) -> list[Any]:
     return [
         dcc.Store(id="runs-refresh", data=0),
+        dcc.Store(id="runs-at", data=0),
         dcc.Store(id="runs-trail", data=[None]),
         dcc.Store(id="runs-asked"),
         dcc.Store(id="runs-filters", data=chosen),

@@ -76,3 +76,25 @@ def test_chosen_runs_are_compared(wide: Watch) -> None:
         box.check()
     page.get_by_role("button", name="Compare 2").click()
     page.wait_for_url(re.compile(r"/app/compare\?runs=\w+,\w+"))
+
+
+def test_pages_are_turned_while_runs_come_in(wide: Watch) -> None:
+    """The rows are asked for again in the very moment of the click: the page turns all the same."""
+    page = wide.page
+    page.goto("/app/")
+    for number in range(26):
+        made(page, "hanging-riser-case1", name=f"leaf {number}")
+    page.goto("/app/?q=leaf")
+    rows = page.locator(".ag-center-cols-container .ag-row")
+    expect(rows).to_have_count(25)
+    script = """(button) => {
+      document.querySelector(button).click();
+      for (const wait of [0, 5, 20, 40]) {
+        setTimeout(() => window.dash_clientside.set_props('runs-refresh', { data: Date.now() + wait }), wait);
+      }
+    }"""
+    page.evaluate(script, "#runs-older")
+    expect(rows).to_have_count(1)
+    page.evaluate(script, "#runs-newer")
+    expect(rows).to_have_count(25)
+    expect(page.locator("#runs-newer")).to_be_disabled()

@@ -106,11 +106,13 @@ def a_round(tab: Tab, pair: list[str]) -> None:
     page.locator(".sd-run-link").click()
     page.get_by_role("tab", name=re.compile("^Time")).click()
     page.wait_for_function(DRAWN, arg=1)
+    page.wait_for_timeout(1000)
     tab.act("zoom in 150 000 samples", lambda: page.evaluate(
         """async () => {
           const plot = document.querySelector('.js-plotly-plot');
           const from = 1000 + 9000 * Math.random();
-          const drawn = new Promise((done) => {
+          const drawn = new Promise((done, failed) => {
+            setTimeout(() => failed(new Error('no finer curve within 30 s')), 30000);
             const look = () => (plot.data[0].x[0] >= from - 1 && plot.data[0].x.at(-1) <= from + 2001
               ? requestAnimationFrame(done) : requestAnimationFrame(look));
             look();

@@ -2,7 +2,9 @@
 
 1. Overhead of one run: small frequency-domain runs one after another, from the request's arrival to the stored result,
    less what the solver alone takes in a process of its own.
-2. Load: 500 such runs submitted one by one while 100 clients poll, each once a second; times of all answers to reads.
+2. Load: 500 such runs go through while 100 clients poll, each once a second; times of all answers to reads. The runs
+   come as one study, and again one by one, each sent as soon as the one before is accepted: then the API's own process
+   has never nothing to do, and what is read waits for what is written.
 3. Queueing: 10 000 runs in one request.
 
 On a quiet machine; the load of the machine and the processor time of everything else are printed beside the numbers.
@@ -149,22 +151,27 @@ def poll(port: int, clients: int, seconds: float, ids: list[str]) -> None:
     print(json.dumps({"times": times, "bad": bad}))
 
 
-def load(client: httpx.Client, runs: int, clients: int, workers: int, alone: float) -> dict[str, float]:
+def load(
+    client: httpx.Client, runs: int, clients: int, workers: int, alone: float, one_by_one: bool
+) -> dict[str, float]:
     first = [submit(client, 200_000 + number) for number in range(10)]
     port, seconds = client.base_url.port, max(30.0, runs * 0.12)
     command = [sys.executable, __file__, "--poll", str(port), str(clients), str(seconds), *first]
     polling = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT)
     time.sleep(2)
     began = time.perf_counter()
-    for number in range(runs):
-        submit(client, number)
+    if one_by_one:
+        for number in range(runs):
+            submit(client, number)
+    else:
+        study(client, runs, 2.0e9)
     submitted = time.perf_counter() - began
     wait_until(lambda: client.get("/api/v1/runs?state=queued,running&limit=1").json()["total"] == 0, 600)
     done = time.perf_counter() - began
     found = json.loads(polling.communicate()[0])
     times = sorted(found["times"])
     assert not found["bad"], found["bad"]
-    return {
+    measured = {
         "reads": len(times),
         "read_p50_ms": 1e3 * times[len(times) // 2],
         "read_p99_ms": 1e3 * times[int(0.99 * len(times))],
@@ -173,20 +180,27 @@ def load(client: httpx.Client, runs: int, clients: int, workers: int, alone: flo
         "through_s": done,
         "per_run_over_solver_ms": 1e3 * (done * workers / runs - alone),
     }
+    return {f"{'one_by_one' if one_by_one else 'study'}_{name}": value for name, value in measured.items()}
 
 
-def queue(client: httpx.Client, runs: int) -> dict[str, float]:
+def study(client: httpx.Client, runs: int, stiffness: float) -> tuple[str, float]:
+    """So many runs in one request, each with an axial stiffness of its own; its id and the seconds to the answer."""
     names = client.post("/api/v1/cases", content=CASE, headers={"content-type": "application/yaml"}).json()
     case = client.get(f"/api/v1/cases/{names['id']}").json()["case"]
     pointer = f"/line_types/{next(iter(case['line_types']))}/EA"
-    grid = {pointer: [1.0e9 + number for number in range(runs)]}
-    began = time.perf_counter()
+    grid = {pointer: [stiffness + number for number in range(runs)]}
     body = {"case_id": names["id"], "analyses": ANALYSES, "grid": grid}
+    began = time.perf_counter()
     answer = client.post("/api/v1/studies", json=body, timeout=300)
     took = time.perf_counter() - began
     assert answer.status_code == 202, answer.text
+    return str(answer.json()["id"]), took
+
+
+def queue(client: httpx.Client, runs: int) -> dict[str, float]:
+    key, took = study(client, runs, 1.0e9)
     began = time.perf_counter()
-    client.post(f"/api/v1/studies/{answer.json()['id']}/cancel", timeout=300)
+    client.post(f"/api/v1/studies/{key}/cancel", timeout=300)
     return {"queue_10000_s": took, "cancel_10000_s": time.perf_counter() - began}
 
 
@@ -206,7 +220,9 @@ def main() -> None:
     for kind in options.kind:
         with started(kind, options.workers) as client:
             finished(client, submit(client, 999_999))  # workers are awake
-            found = overhead(client, 30, alone) | load(client, options.runs, options.clients, options.workers, alone)
+            found = overhead(client, 30, alone)
+            for one_by_one in (False, True):
+                found |= load(client, options.runs, options.clients, options.workers, alone, one_by_one)
             found |= queue(client, 10_000)
         print(
             f"{kind} (load {os.getloadavg()[0]:.1f}): "

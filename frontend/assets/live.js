@@ -161,6 +161,12 @@
     return "";
   }
 
+  /* A change of a history's layout that is about time; others say nothing of what to show. */
+  function looked(change) {
+    const about = change && ["xaxis.range", "xaxis.range[0]", "xaxis.autorange"].some((name) => change[name] !== undefined);
+    return about ? change : nothing();
+  }
+
   /* Every change of page: close a stream that belongs to another page. */
   function follow(pathname, prefix) {
     const inside = (pathname || "").slice((prefix || "/").length - 1).replace(/\/$/, "");
@@ -177,7 +183,7 @@
 
   window.dash_clientside = window.dash_clientside || {};
   window.dash_clientside.slowdrift = Object.assign(window.dash_clientside.slowdrift || {}, {
-    openRuns, openRun, paintRun, address, zoomed, follow, navbar,
+    openRuns, openRun, paintRun, address, zoomed, looked, follow, navbar,
   });
   window.addEventListener("pagehide", stop);
 })();

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 import dash_mantine_components as dmc
-from dash import MATCH, Dash, Input, Output, Patch, State, no_update
+from dash import MATCH, ClientsideFunction, Dash, Input, Output, Patch, State, dcc, no_update
 
 from frontend.client import attempt, client
 from frontend.components.cards import picture
@@ -52,7 +52,8 @@ def render(results: Results) -> list[Any]:
     channel = results.channels([offered[response]], points=POINTS, seed=seed, **view)[offered[response]]
     whole = f"{said(response)}, seed {seed}" if seed else said(response)
     drawn = history(channel, said(response).split(",")[0], span=span)
-    card = picture(whole[0].upper() + whole[1:], drawn, f"{offered[response]}?{seed or ''}", NOTE, "history")
+    key = f"{offered[response]}?{seed or ''}"
+    card = picture(whole[0].upper() + whole[1:], drawn, key, NOTE, "history")
     controls = [pick_response([(key, said(key)) for key in offered], response)]
     controls += [pick_seed(seeds(results.summary), seed)] if seed else []
     table_of_extremes = extremes_table(results.summary["time_domain"])
@@ -60,6 +61,7 @@ def render(results: Results) -> list[Any]:
         bar(*controls),
         dmc.Stack(
             [
+                dcc.Store(id={"type": "history-look", "name": key}),
                 card,
                 dmc.Text(told(results.summary), size="sm", c="dimmed"),
                 *([table_of_extremes] if table_of_extremes else []),
@@ -107,9 +109,15 @@ def extremes_table(made: dict[str, Any]) -> Any:
 
 
 def register(app: Dash) -> None:
+    app.clientside_callback(  # a change of size alone must not push aside the question for the finer curve
+        ClientsideFunction("slowdrift", "looked"),
+        Output({"type": "history-look", "name": MATCH}, "data"),
+        Input({"type": "history", "name": MATCH}, "relayoutData"),
+        prevent_initial_call=True,
+    )
     app.callback(
         Output({"type": "history", "name": MATCH}, "figure"),
-        Input({"type": "history", "name": MATCH}, "relayoutData"),
+        Input({"type": "history-look", "name": MATCH}, "data"),
         State({"type": "history", "name": MATCH}, "id"),
         State("run-id", "data"),
         prevent_initial_call=True,

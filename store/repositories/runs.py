@@ -141,7 +141,7 @@ class RunRepository(Scoped):
         """Newest first, from below the id `cursor` (or oldest first, from above); and how many there are in all."""
         which = which or RunFilter()
         query = self._select(Run).where(*which.conditions())
-        total = self.session.scalar(select(func.count()).select_from(query.subquery())) or 0
+        total = self.session.scalar(query.with_only_columns(func.count(), maintain_column_froms=True)) or 0
         if cursor:
             query = query.where(Run.id > cursor if which.oldest_first else Run.id < cursor)
         query = query.order_by(Run.id if which.oldest_first else Run.id.desc())

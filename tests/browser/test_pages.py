@@ -114,10 +114,16 @@ def test_a_zoom_is_in_the_address_and_a_picture_becomes_a_file(wide: Watch) -> N
     assert start >= 100
     assert end <= 260
     expect(page.locator(".dash-graph--pending")).to_have_count(0, timeout=steps.PATIENT)
-    page.evaluate(
-        "window.Plotly.relayout(document.querySelector('.js-plotly-plot'), {'xaxis.range[0]': 120, 'xaxis.range[1]': 200})"
+    page.evaluate(  # and the window changes its size before the finer curve is there, which says nothing of time
+        """async () => {
+          const plot = document.querySelector('.js-plotly-plot');
+          await window.Plotly.relayout(plot, {'xaxis.range[0]': 120, 'xaxis.range[1]': 200});
+          await new Promise((done) => setTimeout(done, 60));
+          await window.Plotly.relayout(plot, {autosize: true});
+        }"""
     )
     expect(page).to_have_url(re.compile(r"from=120&to=200"))
+    page.wait_for_function(f"() => {SHOWN}[1] >= 119 && {SHOWN}[2] <= 201")
     for kind in ("svg", "csv"):
         with page.expect_download() as saved:
             page.locator(f".modebar-btn[data-title*='{kind.upper()}']").first.dispatch_event("click")

@@ -21,6 +21,11 @@ def watched(request: pytest.FixtureRequest, chromium: Browser, fake: str) -> Ite
     yield from _page(chromium, fake, request.param)
 
 
+@pytest.fixture(params=[WIDE, NARROW], ids=["wide", "narrow"])
+def served(request: pytest.FixtureRequest, chromium: Browser, service: str) -> Iterator[Watch]:
+    yield from _page(chromium, service, request.param)
+
+
 def faults(page: Page, where: str) -> list[str]:
     """What axe calls serious or critical, in both schemes, with the elements."""
     found = []
@@ -73,4 +78,33 @@ def test_results(watched: Watch) -> None:
         page.goto(f"/app/runs/{run_id}?tab={tab}")
         expect(page.locator("#run-panel > div:not(.mantine-Skeleton-root)").first).to_be_visible(timeout=steps.PATIENT)
         found += faults(page, tab)
+    assert not found, "\n".join(found)
+
+
+def test_shared_study_data_and_teams(served: Watch) -> None:
+    """What only the real service has."""
+    page, found = served.page, []
+    page.goto("/app/", timeout=120_000)  # the first page of a service that has just been started
+    made = page.evaluate(
+        """async () => {
+          const ask = async (path, body) => (await fetch('/api/v1' + path, body && {method: 'POST',
+            headers: {'content-type': 'application/json'}, body: JSON.stringify(body)})).json();
+          const text = (await ask('/examples')).find((one) => one.name === 'hanging-riser-case1').yaml;
+          const analyses = ['statics', 'frequency_domain'];
+          let run = await ask('/runs', {yaml: text, analyses});
+          const grid = {'/line_types/riser/EA': [4e8, 5e8, 6e8]};
+          let study = await ask('/studies', {name: 'Stiffness', yaml: text, analyses, grid});
+          const busy = () => ask('/runs?state=queued,running&limit=1');
+          while ((await busy()).total) await new Promise((done) => setTimeout(done, 300));
+          const share = await ask('/shares', {run_ids: [run.id]});
+          const sets = await ask('/data-sets');
+          return [`shared/${share.token}`, `studies/${study.id}`, `data/${sets.items[0].id}`, 'teams'];
+        }"""
+    )
+    for path in made:
+        page.goto(f"/app/{path}")
+        expect(page.get_by_role("heading", level=1)).to_be_visible(timeout=steps.PATIENT)
+        expect(page.locator(".mantine-Skeleton-root, .dash-graph--pending")).to_have_count(0, timeout=steps.PATIENT)
+        page.wait_for_timeout(1000)
+        found += faults(page, path.partition("/")[0])
     assert not found, "\n".join(found)

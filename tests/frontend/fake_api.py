@@ -95,9 +95,16 @@ class FakeService:
             "analyses": analyses or list(case["case"]["analyses"]), "state": "queued", "outcomes": {}, "reason": None,
             "progress": 0.0, "message": "waiting for a worker", "created_at": now(), "started_at": None,
             "finished_at": None, "attempt": 0, "solver_version": None, "warnings": [], "born": time.monotonic(),
+            "watched": False,
             "fail": fail, "name": "", "tags": [], "pinned": False, "eta_seconds": 2.0, "created_by": "Ada", "kind": "case",
         }  # fmt: skip
         return self.runs[run_id]
+
+    def watched(self, run_id: str) -> None:
+        """A run goes on from when its page is there to see it, however long that took to load."""
+        run = self.runs.get(run_id)
+        if run is not None and run["state"] not in FINAL and not run["watched"]:
+            run.update(born=time.monotonic(), watched=True)
 
     def advance(self, run: dict[str, Any]) -> dict[str, Any]:
         share = (time.monotonic() - run["born"]) / max(self.run_seconds, 1e-9)
@@ -111,7 +118,7 @@ class FakeService:
         elif run["state"] not in FINAL and share > 0.15:
             run["started_at"] = run["started_at"] or now()
             run.update(state="running", progress=round(share, 2), message="frequency domain, iteration", attempt=1)
-        return {key: value for key, value in run.items() if key not in ("born", "fail")}
+        return {key: value for key, value in run.items() if key not in ("born", "watched", "fail")}
 
     def results(self, run: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
         timed = "time_domain" in run["analyses"]
@@ -248,6 +255,8 @@ def _runs(app: FastAPI, fake: FakeService) -> None:
 
     async def stream(request: Request, run_ids: list[str] | None) -> Any:
         seen: dict[str, str] = {}
+        for run_id in run_ids or []:
+            fake.watched(run_id)
         while not await request.is_disconnected():
             for run_id in run_ids or list(fake.runs):
                 if run_id not in fake.runs:

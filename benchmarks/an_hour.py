@@ -4,8 +4,8 @@ One tab of a real headless Chromium that is never reloaded, over the real servic
 list, older and newer pages, a search; a run, all its tabs, a zoom in its history; the comparison of its domains; the
 editor with an edit; back to the list. Between rounds a new run is started, so that the list moves while one looks. At
 each round's end, on the list: heap after a garbage collection, DOM nodes, listeners, and the seconds of each action.
-Exit status 1 where the second half's heap grows by more than 5 %, or an action's median of the last quarter is over 1.5
-times the first's.
+Exit status 1 where the last quarter's heap is over 1.05 times the third's, or an action's median of the last quarter is
+over 1.5 times the first's.
 """
 
 from __future__ import annotations

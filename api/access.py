@@ -22,7 +22,7 @@ from store.repositories.entry import PLACES, EntryRepository, Home, stale
 from store.scope import Scope
 from store.tokens import SHARE, digest, is_token
 
-from .context import Context, acting, get_context
+from .context import Context, acting, context_of
 
 SAFE = ("GET", "HEAD", "OPTIONS")
 SHARE_TOKEN = "share_token"
@@ -128,7 +128,7 @@ def _asks_the_database(request: Request, need: Need) -> bool:
 
 
 def _decide(request: Request, need: Need) -> tuple[Scope, bool]:
-    context, principal = get_context(request), get_principal(request)
+    context, principal = context_of(request), get_principal(request)
     changes = request.method not in SAFE and need != "read"
     if need == "link":
         return _shared(context, str(request.path_params[SHARE_TOKEN])), False
@@ -222,7 +222,7 @@ def get_principal(request: Request) -> Principal | None:
     return found
 
 
-def get_person(request: Request) -> Principal:
+async def get_person(request: Request) -> Principal:
     principal = get_principal(request)
     if principal is None:
         raise SignInError("Sign in first.")

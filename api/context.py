@@ -92,12 +92,19 @@ def _entry(act: Acting) -> Audit:
     )
 
 
-def get_context(request: Request) -> Context:
+def context_of(request: Request) -> Context:
     context: Context = request.app.state.context
     return context
 
 
-def get_scope(request: Request) -> Scope:
+# Dependencies that wait for nothing are coroutines all the same: FastAPI sends every other function to a thread.
+
+
+async def get_context(request: Request) -> Context:
+    return context_of(request)
+
+
+async def get_scope(request: Request) -> Scope:
     """Whose rows the caller may touch: decided for every route under /api/v1 by `api/access.py` before it is called."""
     admitted: Scope = request.scope["state"]["admitted"]
     return admitted

@@ -41,7 +41,7 @@ class Once:
         return row.resource_id
 
 
-def get_once(
+async def get_once(
     request: Request,
     response: Response,
     body: Annotated[Body, Depends(read_body)],

@@ -96,20 +96,20 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
     app.include_router(health.router)
     doors = [Depends(admit), Security(BEARER), Security(SESSION)]
     base = APIRouter(prefix=BASE, responses=problems(400, 401, 403, 404, 413, 422), dependencies=doors)
-    for module in (
+    for module in (  # looked through in this order: what is asked most comes first
+        runs,
+        events,
+        studies,
         auth,
         cases,
         catalogue,
         data_sets,
-        events,
         exports,
         hydrodynamics,
         imports,
         moordyn,
         queue,
-        runs,
         shares,
-        studies,
         teams,
         users,
     ):

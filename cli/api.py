@@ -16,6 +16,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def run_api(options: argparse.Namespace) -> int:
+    import gc
     import socket
 
     import uvicorn
@@ -26,6 +27,7 @@ def run_api(options: argparse.Namespace) -> int:
     from .serve import compose_app
 
     hold_on()
+    gc.disable()
     settings = Settings.from_env()
     configure(settings.log_level, settings.log_json)
     app = compose_app(settings, options.port, pages=not options.no_pages)
@@ -37,5 +39,8 @@ def run_api(options: argparse.Namespace) -> int:
         timeout_graceful_shutdown=2,
         timeout_keep_alive=30,
     )
+    gc.freeze()  # what is here now stays: to look it through again and again would stop all answers for 0.1 s each time
+    gc.set_threshold(10_000, 10, 10)
+    gc.enable()
     uvicorn.Server(config).run(sockets=[socket.socket(fileno=options.fd)])
     return 0

@@ -30,7 +30,7 @@ from .common import Key, problems
 router = APIRouter(tags=["accounts"])
 
 
-def get_attempts(request: Request) -> Attempts:
+async def get_attempts(request: Request) -> Attempts:
     found: Attempts = request.app.state.attempts
     return found
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 from fastapi import Path as PathParameter
-from fastapi import Query
+from fastapi import Query, Response
+from pydantic import BaseModel
 
 from store.bundled import examples_dir
 from store.models import STATES
@@ -31,6 +32,15 @@ StatesQuery = Annotated[
 
 def states_of(text: str | None) -> tuple[str, ...]:
     return tuple(text.split(",")) if text else ()
+
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+def as_json(model: Model) -> Model:
+    """What a route that is asked often gives back for the model: its JSON. FastAPI would check first, in another
+    thread, that the model is what it is."""
+    return Response(model.model_dump_json(), media_type="application/json")  # type: ignore[return-value]
 
 
 def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:

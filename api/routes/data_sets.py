@@ -24,7 +24,7 @@ Index = Annotated[int | None, Query(ge=0, le=5, description="degree of freedom: 
 Text = Annotated[str | None, Form(max_length=100)]
 
 
-def wamit_form(
+async def wamit_form(
     length: Text = None,
     values: Text = None,
     density: Text = None,

@@ -17,7 +17,7 @@ from ..idempotency import OnceDep
 from ..schemas import ChannelPage, ChannelValues, RunCase, RunChange, RunInfo, RunPage, RunRequest
 from ..services import channels
 from ..services import runs as service
-from .common import CASE_BYTES, Cursor, Key, Limit, StatesQuery, problems, states_of
+from .common import CASE_BYTES, Cursor, Key, Limit, StatesQuery, as_json, problems, states_of
 
 router = APIRouter(prefix="/runs", tags=["runs"])
 _REQUEST = {
@@ -28,7 +28,7 @@ _REQUEST = {
 }
 
 
-def run_filter(
+async def run_filter(
     state: StatesQuery = None,
     q: Annotated[str | None, Query(max_length=200, description="part of the run's or the case's name")] = None,
     tag: Annotated[str | None, Query(max_length=50)] = None,
@@ -82,12 +82,12 @@ def list_runs(
     with context.database.read() as session:
         views, total = RunRepository(session, scope).page(limit, cursor, which)
     items = [service.info(view) for view in views]
-    return RunPage(items=items, next_cursor=items[-1].id if len(items) == limit else None, total=total)
+    return as_json(RunPage(items=items, next_cursor=items[-1].id if len(items) == limit else None, total=total))
 
 
 @router.get("/{run_id}", responses=problems(404))
 def get_run(context: ContextDep, scope: ScopeDep, run_id: Key) -> RunInfo:
-    return service.show(context, scope, run_id)
+    return as_json(service.show(context, scope, run_id))
 
 
 @router.post("/{run_id}/cancel", status_code=202, responses=problems(404, 409))

@@ -38,7 +38,7 @@ from .common import Cursor, Key, Limit, problems
 router = APIRouter(tags=["teams"])
 
 
-def get_links(context: ContextDep, request: Request) -> str:
+async def get_links(context: ContextDep, request: Request) -> str:
     """The address before `/app/…` of links that are sent to people."""
     return (context.settings.public_url or str(request.base_url)).rstrip("/")
 

@@ -112,7 +112,7 @@ class _Writer:
 
 def bundle(context: Context, scope: Scope, run_id: str) -> IO[bytes]:
     """An open file at its start; it is gone once closed. ConflictError for a run without case or results."""
-    with context.database.read() as session:
+    with context.database.snapshot() as session:
         runs = RunRepository(session, scope)
         run, summary = runs.get(run_id), runs.summary(run_id)
         if run.case_version_id is None:

@@ -45,7 +45,7 @@ class Column:
 
 def table(context: Context, scope: Scope, study_id: str, columns: str | None, limit: int, after: int) -> StudyTable:
     """One page. Raises RequestValidationError for a column that cannot be."""
-    with context.database.read() as session:
+    with context.database.snapshot() as session:
         studies = StudyRepository(session, scope)
         chosen = _columns(studies, studies.get(study_id), columns)
         rows = list(studies.rows(study_id, after, limit))
@@ -95,7 +95,7 @@ def _array(pa: Any, cells: Sequence[Any]) -> Any:
 
 def _whole(context: Context, scope: Scope, study_id: str, columns: str | None) -> Iterator[list[Any]]:
     """The names, then the rows. One row's summary in memory at a time."""
-    with context.database.read() as session:
+    with context.database.snapshot() as session:
         studies = StudyRepository(session, scope)
         chosen = _columns(studies, studies.get(study_id), columns)
         yield [column.name for column in chosen]

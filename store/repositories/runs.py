@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
-from sqlalchemy import case, delete, func, select, update
+from sqlalchemy import bindparam, case, delete, func, select, update
 
 from solver.results.part import Chunk
 
 from ..broker import RUNS
-from ..clock import clock, utc_now
+from ..clock import clock, clock_of, utc_now
 from ..effective import identity
 from ..errors import ConflictError, NotFoundError
 from ..estimate import Amount, Snapshot, snapshot
@@ -208,7 +209,8 @@ class RunRepository(Scoped):
     def _with_tasks(self, runs: Sequence[Run]) -> list[RunView]:
         if not runs:
             return []
-        sums = {row.run_id: row for row in self.session.execute(_totals(clock(self.session), [run.id for run in runs]))}
+        totals = _totals(self.session.get_bind().dialect.name)
+        sums = {row.run_id: row for row in self.session.execute(totals, {"runs": [run.id for run in runs]})}
         active = any(run.state in ACTIVE for run in runs)
         queue = snapshot(self.session) if active else Snapshot()
         shown = self.scope.run_ids is None  # behind a share link nobody is named
@@ -218,9 +220,11 @@ class RunRepository(Scoped):
         return [_view(run, sums.get(run.id), queue, names) for run in runs]
 
 
-def _totals(now: Any, keys: Sequence[str]) -> Any:
+@cache
+def _totals(dialect: str) -> Any:
+    """What the tasks of `runs` add up to. Made once: to put it together takes three times as long as to execute it."""
     working, waiting = Task.state == RUNNING, Task.state == QUEUED
-    spent = case((working, now - Task.claimed_at), else_=func.coalesce(Task.seconds, 0.0))
+    spent = case((working, clock_of(dialect) - Task.claimed_at), else_=func.coalesce(Task.seconds, 0.0))
     return (
         select(
             Task.run_id,
@@ -234,7 +238,7 @@ def _totals(now: Any, keys: Sequence[str]) -> Any:
             func.sum(spent).label("seconds"),
             func.min(case((waiting, Task.id))).label("first"),
         )
-        .where(Task.run_id.in_(keys))
+        .where(Task.run_id.in_(bindparam("runs", expanding=True)))
         .group_by(Task.run_id)
     )
 

@@ -61,16 +61,20 @@ class Guarded(FastAPI):
         return Meter(Guard(inner, context.settings.hosts), self.state.metrics)
 
 
-def create_app(settings: Settings | None = None, reconcile: bool = True) -> FastAPI:
+def create_app(settings: Settings | None = None, reconcile: bool = True, count_runs: bool = True) -> FastAPI:
+    """`reconcile`: put right what faults leave behind; `count_runs`: for the metrics. Of the processes that answer on
+    one port, one does so."""
     settings = settings or Settings.from_env()
     context = Context(settings, Database(settings.database), Doorbell(settings))
+    metrics = Metrics(context.database, count_runs)
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         reconciler = Reconciler(context.database, context.doorbell, settings) if reconcile else None
         if reconciler:
             reconciler.start()
-        yield
+        with metrics.counting():
+            yield
         if reconciler:
             reconciler.stop()
         context.doorbell.close()
@@ -89,7 +93,7 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
     app.state.context = context
     app.state.attempts = Attempts(settings)
     errors.install(app)
-    app.state.metrics = Metrics(context.database)
+    app.state.metrics = metrics
     app.add_middleware(ETags)
     app.add_middleware(CompressMiddleware, minimum_size=2000, zstd_level=3, brotli=False, gzip_level=5)
     app.add_middleware(Rates, per_minute=settings.rate_per_minute)

@@ -1,14 +1,21 @@
-"""Prometheus: what this process answered and how fast, and what the database says of queues and runs."""
+"""Prometheus: what was answered and how fast, and what the database says of queues and runs.
+
+Several processes on one port (`slowdrift serve --api-processes`) keep their counts in files of a folder, and whichever
+is asked tells those of all; the first of them counts runs that ended.
+"""
 
 from __future__ import annotations
 
+import os
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import timedelta
 
 from prometheus_client import CollectorRegistry, Histogram, ProcessCollector, generate_latest
 from prometheus_client.core import GaugeMetricFamily, Metric
+from prometheus_client.multiprocess import MultiProcessCollector
 from prometheus_client.registry import Collector
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -22,6 +29,8 @@ from store.repositories import QueueRepository
 WINDOW = timedelta(minutes=10)
 """Runs that ended longer ago than this before a scrape are not seen by the histogram of run times."""
 METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")
+LOOK_SECONDS = 15.0
+"""How often the first of several processes looks for runs that ended, since it may never be the one that is asked."""
 FAST = (0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 30)
 SLOW = (0.1, 0.3, 1, 3, 10, 30, 100, 300, 1000, 3000, 10_000, 30_000)
 
@@ -29,28 +38,52 @@ SLOW = (0.1, 0.3, 1, 3, 10, 30, 100, 300, 1000, 3000, 10_000, 30_000)
 class Metrics:
     """The registry of one app."""
 
-    def __init__(self, database: Database):
+    def __init__(self, database: Database, count_runs: bool = True):
         self.registry = CollectorRegistry()
+        self._counts_runs, self._several = count_runs, bool(os.environ.get("PROMETHEUS_MULTIPROC_DIR"))
+        own = None if self._several else self.registry
         self.requests = Histogram(
             "slowdrift_request_seconds", "Time to the end of an answer; event streams apart", ("method", "route", "status"),
-            buckets=FAST, registry=self.registry,
+            buckets=FAST, registry=own,
         )  # fmt: skip
         self.runs = Histogram(
             "slowdrift_run_seconds", "From a run's first claim to its end", ("kind", "state"), buckets=SLOW,
-            registry=self.registry,
+            registry=own,
         )  # fmt: skip
         self._database, self._lock = database, threading.Lock()
         self._seen: set[str] = set()
         self._first = True
-        ProcessCollector(registry=self.registry)
+        if self._several:
+            MultiProcessCollector(self.registry)
+        else:
+            ProcessCollector(registry=self.registry)
         self.registry.register(_Rows(database))
 
     def text(self) -> bytes:
-        with self._lock:
-            self._observe_runs()
+        self._observe_runs()
         return generate_latest(self.registry)
 
+    @contextmanager
+    def counting(self) -> Iterator[None]:
+        """While the app runs."""
+        halt = threading.Event()
+
+        def look() -> None:
+            while not halt.is_set():
+                self._observe_runs()
+                halt.wait(LOOK_SECONDS)
+
+        if self._several and self._counts_runs:
+            threading.Thread(target=look, name="metrics", daemon=True).start()
+        yield
+        halt.set()
+
     def _observe_runs(self) -> None:
+        if self._counts_runs:
+            with self._lock:
+                self._observe()
+
+    def _observe(self) -> None:
         """Each ended run once; those from before the first scrape are not counted."""
         try:
             with self._database.read() as session:

@@ -62,7 +62,7 @@ def bare() -> float:
 
 
 @contextlib.contextmanager
-def started(kind: str, workers: int) -> Iterator[httpx.Client]:
+def started(kind: str, *options: str) -> Iterator[httpx.Client]:
     name = f"sd_load_{uuid.uuid4().hex[:10]}"
     with tempfile.TemporaryDirectory(prefix="sd-load-", ignore_cleanup_errors=True) as folder:
         given: dict[str, object] = {"data_dir": Path(folder), "queue_prefix": name}
@@ -70,7 +70,7 @@ def started(kind: str, workers: int) -> Iterator[httpx.Client]:
             given["database_url"] = create_database(name)
             given["broker_url"] = REDIS if kind == "postgres-redis" else RABBITMQ
         try:
-            with service(Settings.model_validate(given), False, "--workers", str(workers)) as client:
+            with service(Settings.model_validate(given), False, *options) as client:
                 yield client
         finally:
             if kind != "embedded":
@@ -204,12 +204,24 @@ def queue(client: httpx.Client, runs: int) -> dict[str, float]:
     return {"queue_10000_s": took, "cancel_10000_s": time.perf_counter() - began}
 
 
+def cpu_times() -> list[int]:
+    """Of the machine since its start, in ticks: user, nice, system, idle, iowait, irq, softirq, steal, …"""
+    return [int(ticks) for ticks in Path("/proc/stat").read_text().split("\n", 1)[0].split()[1:]]
+
+
+def stolen(before: list[int]) -> float:
+    """The share of the machine's time since then that other machines on the same host took."""
+    spent = [now - then for now, then in zip(cpu_times(), before, strict=True)]
+    return spent[7] / sum(spent[:8])
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--kind", nargs="*", choices=KINDS, default=["embedded", "postgres-redis"])
     parser.add_argument("--runs", type=int, default=500)
     parser.add_argument("--clients", type=int, default=100)
     parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--api-processes", type=int, default=1)
     parser.add_argument("--poll", nargs="*", help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.poll:
@@ -218,14 +230,16 @@ def main() -> None:
     alone = bare()
     print(f"machine: {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}; solver alone {1e3 * alone:.1f} ms a run")
     for kind in options.kind:
-        with started(kind, options.workers) as client:
+        given = ("--workers", str(options.workers), "--api-processes", str(options.api_processes))
+        before = cpu_times()
+        with started(kind, *given) as client:
             finished(client, submit(client, 999_999))  # workers are awake
             found = overhead(client, 30, alone)
             for one_by_one in (False, True):
                 found |= load(client, options.runs, options.clients, options.workers, alone, one_by_one)
             found |= queue(client, 10_000)
         print(
-            f"{kind} (load {os.getloadavg()[0]:.1f}): "
+            f"{kind}, {options.api_processes} API process(es) (load {os.getloadavg()[0]:.1f}, stolen {stolen(before):.0%}): "
             + ", ".join(f"{name} {value:.4g}" for name, value in found.items())
         )
     return None

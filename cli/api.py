@@ -12,6 +12,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("--fd", type=int, required=True)
     parser.add_argument("--port", type=int, required=True)
     parser.add_argument("--no-pages", action="store_true")
+    parser.add_argument("--beside", action="store_true", help="beside the first, which does what is to be done once")
     parser.set_defaults(func=run_api)
 
 
@@ -30,7 +31,7 @@ def run_api(options: argparse.Namespace) -> int:
     gc.disable()
     settings = Settings.from_env()
     configure(settings.log_level, settings.log_json)
-    app = compose_app(settings, options.port, pages=not options.no_pages)
+    app = compose_app(settings, options.port, pages=not options.no_pages, first=not options.beside)
     config = uvicorn.Config(
         app,
         log_config=None,

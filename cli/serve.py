@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import importlib.util
 import os
+import shutil
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +14,9 @@ from store.settings import Settings
 from .options import RefusedError, add_data_dir, bind, is_loopback, read_settings, refuse, say
 from .supervisor import Child, Supervisor
 
+MOST_PROCESSES = 64
+COUNTS = "PROMETHEUS_MULTIPROC_DIR"
+"""Prometheus' own name for it."""
 NO_LOGIN = (
     "{host} can be reached from other machines, and there are no accounts yet: whoever reaches it could read and "
     "delete everything. Make one with `slowdrift user add EMAIL`, or say --setup for a link at which to make it; bind to "
@@ -31,10 +35,20 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--port", type=int, default=8000, help="0 takes any free one (default: %(default)s)")
     add_data_dir(parser)
     parser.add_argument("--workers", type=int, default=1, metavar="N", help="runs at a time; 0: API only (default: 1)")
+    parser.add_argument(
+        "--api-processes", type=_count, default=1, metavar="N", help="processes that answer, on one port (default: 1)"
+    )
     parser.add_argument("--no-pages", action="store_true", help="REST only")
     parser.add_argument("--allow-no-login", action="store_true", help="serve other machines though nobody signs in")
     parser.add_argument("--setup", action="store_true", help="print a link at which to make the first account")
     parser.add_argument("--log", choices=("files", "here"), default="files", help="logs into the data folder, or here")
+
+
+def _count(text: str) -> int:
+    number = int(text) if text.isdecimal() else 0
+    if not 1 <= number <= MOST_PROCESSES:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of processes from 1 to {MOST_PROCESSES}")
+    return number
 
 
 @dataclass
@@ -80,7 +94,7 @@ def prepare(options: argparse.Namespace) -> Service:
     port = listener.getsockname()[1]
     supervisor = Supervisor(
         _children(options, listener.fileno(), port),
-        settings.as_env(),
+        settings.as_env() | _counted_together(settings, options, port),
         settings.data_dir / "logs" if options.log == "files" else None,
     )
     supervisor.start()
@@ -89,6 +103,16 @@ def prepare(options: argparse.Namespace) -> Service:
     url = f"http://{f'[{shown}]' if ':' in shown else shown}:{port}"
     setup = _setup_link(settings, url) if options.setup and not known else ""
     return Service(url, settings, supervisor, settings.accounts == "on", setup)
+
+
+def _counted_together(settings: Settings, options: argparse.Namespace, port: int) -> dict[str, str]:
+    """Where several API processes keep their counts, so that whichever is asked for metrics tells those of all."""
+    if options.api_processes == 1:
+        return {}
+    folder = settings.data_dir / "metrics" / str(port)
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    return {COUNTS: str(folder)}
 
 
 def _setup_link(settings: Settings, url: str) -> str:
@@ -111,6 +135,8 @@ def _setup_link(settings: Settings, url: str) -> str:
 def _children(options: argparse.Namespace, descriptor: int, port: int) -> list[Child]:
     api = ["api", "--fd", str(descriptor), "--port", str(port)] + (["--no-pages"] if options.no_pages else [])
     children = [Child("api", api, (descriptor,))]
+    for number in range(2, options.api_processes + 1):
+        children.append(Child(f"api-{number}", [*api, "--beside"], (descriptor,)))
     if options.workers > 0:
         children.append(Child("worker", ["worker", "--concurrency", str(options.workers)]))
         children.append(Child("interactive", ["worker", "--queue", "interactive"]))
@@ -142,15 +168,18 @@ def serve(options: argparse.Namespace) -> int:
     return 0
 
 
-def compose_app(settings: Settings, port: int, pages: bool = True):  # type: ignore[no-untyped-def]
-    """The API app with the pages mounted at /app, which talk to it over loopback like any other client."""
+def compose_app(settings: Settings, port: int, pages: bool = True, first: bool = True):  # type: ignore[no-untyped-def]
+    """The API app with the pages mounted at /app, which talk to it over loopback like any other client.
+
+    `first`: of the processes on this port, the one that does what is to be done once.
+    """
     from starlette.responses import RedirectResponse
 
     from api.guard import session_token
     from api.main import create_app
     from store.tokens import csrf_token
 
-    app = create_app(settings)
+    app = create_app(settings, reconcile=first, count_runs=first)
     if not pages:
         return app
     try:

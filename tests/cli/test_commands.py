@@ -100,3 +100,19 @@ def test_the_supervisor_has_no_worker_when_told(monkeypatch: pytest.MonkeyPatch,
     hulls = ["hydrodynamics"] if capytaine else []
     names = [child.name for child in serve._children(parser.parse_args([]), 3, 8000)]
     assert names == ["api", "worker", "interactive", *hulls]
+
+
+def test_several_api_processes_share_the_port_and_one_is_the_first(capsys: pytest.CaptureFixture[str]) -> None:
+    import argparse
+
+    parser = argparse.ArgumentParser()
+    serve.add_options(parser)
+    given = parser.parse_args(["--workers", "0", "--api-processes", "3"])
+    children = serve._children(given, 3, 8000)
+    assert [child.name for child in children] == ["api", "api-2", "api-3"]
+    assert [child.descriptors for child in children] == [(3,)] * 3
+    assert ["--beside" in child.arguments for child in children] == [False, True, True]
+    for wrong in ("0", "65", "two", "-1"):
+        with pytest.raises(SystemExit):
+            parser.parse_args(["--api-processes", wrong])
+        assert f"{wrong!r} is not a number of processes from 1 to 64" in capsys.readouterr().err

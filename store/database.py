@@ -31,7 +31,8 @@ class Database:
         apart = self.engine.dialect.name != "sqlite"
         single = self.engine.execution_options(isolation_level="AUTOCOMMIT") if apart else self.engine
         still = self.engine.execution_options(isolation_level="REPEATABLE READ") if apart else self.engine
-        self._reading, self._looking = sessionmaker(single), sessionmaker(still)
+        self._reading = sessionmaker(single, autoflush=False)  # never writes, whatever is done to what was read
+        self._looking = sessionmaker(still, autoflush=False)
 
     @contextmanager
     def write(self) -> Iterator[Session]:

@@ -6,7 +6,7 @@ import contextlib
 import time
 
 import pytest
-from sqlalchemy import create_engine, text
+from sqlalchemy import create_engine, select, text
 
 from store.database import IDLE_SECONDS, Database
 from store.models import Team
@@ -38,6 +38,15 @@ def test_a_snapshot_stays_at_one_moment(database: Database) -> None:
         assert count_teams(session) == before
     with database.read() as session:
         assert count_teams(session) == before + 1
+
+
+def test_a_snapshot_streams_rows(database: Database) -> None:
+    names = [f"team {number}" for number in range(7)]
+    for name in names:
+        add_team(database, name)
+    with database.snapshot() as session:
+        rows = session.scalars(select(Team.name).order_by(Team.created_at).execution_options(yield_per=2))
+        assert [name for name in rows if name in names] == names
 
 
 @on_postgresql

@@ -9,6 +9,7 @@ from playwright.sync_api import expect
 
 from tests.browser import steps
 from tests.browser.conftest import Watch
+from tests.frontend.fake_api import SLOWLY
 
 pytestmark = pytest.mark.browser
 FPSO, RISER = "fpso-2000m", "hanging-riser-case1"
@@ -28,7 +29,7 @@ def test_from_an_example_over_an_error_to_the_seven_spectra(wide: Watch) -> None
     picked = "(a => a.value.slice(a.selectionStart, a.selectionEnd))(document.activeElement)"
     assert page.evaluate(picked).startswith("length: -5 m")
 
-    steps.write(page, text)
+    steps.write(page, f"{text}\n{SLOWLY}\n")
     expect(page.locator(".sd-ready")).to_contain_text("ready to run")
     expect(page.locator(".sd-number-wrong")).to_have_count(0)
     steps.start(page)

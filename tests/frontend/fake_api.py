@@ -71,6 +71,10 @@ def check(text: str) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     return case, errors
 
 
+SLOWLY = "# slowly"
+"""A case with this comment takes long enough for a busy machine's browser to show it on its way."""
+
+
 class FakeService:
     def __init__(self, run_seconds: float = 1.5) -> None:
         self.run_seconds = run_seconds
@@ -107,7 +111,8 @@ class FakeService:
             run.update(born=time.monotonic(), watched=True)
 
     def advance(self, run: dict[str, Any]) -> dict[str, Any]:
-        share = (time.monotonic() - run["born"]) / max(self.run_seconds, 1e-9)
+        slowly = SLOWLY in self.cases[run["case_id"]]["yaml"]
+        share = (time.monotonic() - run["born"]) / max(15.0 if slowly else self.run_seconds, 1e-9)
         if run["state"] == "cancelling":
             run.update(state="cancelled", finished_at=now(), message="")
         elif run["state"] not in FINAL and share >= 1:

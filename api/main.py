@@ -61,12 +61,12 @@ class Guarded(FastAPI):
         return Meter(Guard(inner, context.settings.hosts), self.state.metrics)
 
 
-def create_app(settings: Settings | None = None, reconcile: bool = True, count_runs: bool = True) -> FastAPI:
-    """`reconcile`: put right what faults leave behind; `count_runs`: for the metrics. Of the processes that answer on
-    one port, one does so."""
+def create_app(settings: Settings | None = None, reconcile: bool = True) -> FastAPI:
+    """`reconcile`: put right what faults leave behind, and count ended runs for the metrics. Of the processes that
+    answer on one port, one does so."""
     settings = settings or Settings.from_env()
     context = Context(settings, Database(settings.database), Doorbell(settings))
-    metrics = Metrics(context.database, count_runs)
+    metrics = Metrics(context.database, count_runs=reconcile)
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:

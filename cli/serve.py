@@ -179,7 +179,7 @@ def compose_app(settings: Settings, port: int, pages: bool = True, first: bool =
     from api.main import create_app
     from store.tokens import csrf_token
 
-    app = create_app(settings, reconcile=first, count_runs=first)
+    app = create_app(settings, reconcile=first)
     if not pages:
         return app
     try:

@@ -61,4 +61,12 @@ def create_app(api_base_url: str | None = None, prefix: str = "/app/") -> flask.
     routes.register(server)
     security.add_headers(server, app.csp_hashes)
     caching.add_headers(server)
+    _set_up(server)
     return server
+
+
+def _set_up(server: flask.Flask) -> None:
+    """Dash lists its scripts and callbacks at the first request, and a second one that comes meanwhile is answered with
+    a page that lacks them. So that work is done before there are requests."""
+    with server.test_request_context():
+        server.preprocess_request()

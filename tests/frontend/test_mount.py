@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
+import time
+from concurrent.futures import ThreadPoolExecutor
 
 import flask
 import pytest
 from a2wsgi import WSGIMiddleware
+from dash import Dash
 from fastapi.testclient import TestClient
 
 from frontend import caching
@@ -53,6 +56,27 @@ def test_nothing_from_elsewhere_is_allowed(mounted: TestClient) -> None:
 
 def test_policy_by_directive() -> None:
     assert "script-src 'self' 'sha256-x'" in content_security_policy(["'sha256-x'"])
+
+
+def test_the_first_pages_are_whole_however_many_ask_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    lists_assets = Dash._walk_assets_directory
+
+    def slowly(app: Dash) -> None:
+        time.sleep(0.3)
+        lists_assets(app)
+
+    monkeypatch.setattr(Dash, "_walk_assets_directory", slowly)
+    server = create_app("http://service.test", prefix="/")
+
+    def ask(_: int) -> tuple[frozenset[str], int]:
+        with server.test_client() as client:
+            page, callbacks = client.get("/new"), client.get("/_dash-dependencies")
+            return frozenset(re.findall(r'(?:src|href)="([^"?]+)', page.text)), len(callbacks.get_json())
+
+    with ThreadPoolExecutor(4) as many:
+        answers = set(many.map(ask, range(4)))
+    assert len(answers) == 1
+    assert "/assets/editor/7-yaml.js" in answers.pop()[0]
 
 
 def test_rest_stays_rest(mounted: TestClient) -> None:

@@ -96,7 +96,9 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
     app.state.metrics = metrics
     app.add_middleware(ETags)
     app.add_middleware(CompressMiddleware, minimum_size=2000, zstd_level=3, brotli=False, gzip_level=5)
-    app.add_middleware(Rates, per_minute=settings.rate_per_minute)
+    app.add_middleware(
+        Rates, per_minute=settings.rate_per_minute, broker_url=settings.broker_url, prefix=settings.queue_prefix
+    )
     app.include_router(health.router)
     doors = [Depends(admit), Security(BEARER), Security(SESSION)]
     base = APIRouter(prefix=BASE, responses=problems(400, 401, 403, 404, 413, 422), dependencies=doors)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 import gzip
 import json
 import logging
+import uuid
 from typing import Any
 
+import httpx
 import pytest
 import zstandard
 from sqlalchemy.exc import OperationalError
@@ -16,6 +19,7 @@ from api.rates import Rates
 from store import logs
 from store.settings import Settings
 from tests.api.conftest import TestClient
+from tests.service.conftest import REDIS, need
 from tests.service.running import a_case
 
 
@@ -46,17 +50,50 @@ def test_large_answers_are_compressed(client: TestClient, coding: str, unpack: A
     assert len(raw) < len(plain.content) / 3
 
 
-def test_one_caller_cannot_take_all(client: TestClient) -> None:
-    async def app(scope: Any, receive: Any, send: Any) -> None:
-        await send({"type": "http.response.start", "status": 200, "headers": []})
-        await send({"type": "http.response.body", "body": b""})
+async def nothing(scope: Any, receive: Any, send: Any) -> None:
+    """An application that has nothing to say."""
+    await send({"type": "http.response.start", "status": 200, "headers": []})
+    await send({"type": "http.response.body", "body": b""})
 
-    inner = TestClient(Rates(app, per_minute=5))
+
+def test_one_caller_cannot_take_all() -> None:
+    inner = TestClient(Rates(nothing, per_minute=5))
     answers = [inner.get("/") for _ in range(6)]
     assert [answer.status_code for answer in answers] == [200] * 5 + [429]
     assert 1 <= int(answers[-1].headers["retry-after"]) <= 61
     assert answers[-1].headers["content-type"] == "application/problem+json"
-    assert TestClient(Rates(app, per_minute=0)).get("/").status_code == 200
+    assert TestClient(Rates(nothing, per_minute=0)).get("/").status_code == 200
+
+
+def asked_by_turns(times: int, *rates: Rates) -> list[httpx.Response]:
+    """Requests of one caller to processes that answer on one port, in one event loop."""
+
+    async def ask() -> list[httpx.Response]:
+        answers = []
+        for number in range(times):
+            transport = httpx.ASGITransport(rates[number % len(rates)])
+            async with httpx.AsyncClient(transport=transport, base_url="http://localhost") as one:
+                answers.append(await one.get("/"))
+        return answers
+
+    return asyncio.run(ask())
+
+
+@pytest.mark.services
+def test_processes_count_a_caller_together_in_redis() -> None:
+    need("Redis", 6379)
+    prefix = f"sd_{uuid.uuid4().hex[:12]}"
+    together = [Rates(nothing, 5, REDIS, prefix) for _ in range(2)]
+    answers = asked_by_turns(8, *together)
+    assert [answer.status_code for answer in answers] == [200] * 5 + [429] * 3
+    assert 1 <= int(answers[-1].headers["retry-after"]) <= 61
+    assert asked_by_turns(1, Rates(nothing, 5, REDIS, prefix + "x"))[0].status_code == 200  # another service's
+
+
+def test_without_its_redis_each_process_counts_and_nobody_waits(caplog: pytest.LogCaptureFixture) -> None:
+    answers = asked_by_turns(6, Rates(nothing, 5, "redis://127.0.0.1:1/0"))
+    assert [answer.status_code for answer in answers] == [200] * 5 + [429]
+    assert caplog.text.count("counted in this process only") == 1  # Redis was asked once, not six times
 
 
 def test_metrics_tell_queues_runs_and_requests(client: TestClient) -> None:

@@ -8,7 +8,9 @@
    ended count, so that nobody's idle time makes the numbers better.
 3. Queueing: 10 000 runs in one request.
 
-On a quiet machine; the load of the machine and the processor time of everything else are printed beside the numbers.
+With `--accounts` everybody who asks is a member of the team with an API key of their own, so that each request is
+recognised, admitted and counted; without, it is the one person of a service on loopback. On a quiet machine; its load
+and the processor time that other machines took are printed beside the numbers.
 """
 
 from __future__ import annotations
@@ -34,11 +36,18 @@ import httpx
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
+from store.database import Database  # noqa: E402
+from store.models import DEFAULT_TEAM  # noqa: E402
+from store.people import ADMIN, ApiKey  # noqa: E402
+from store.repositories.accounts import AccountRepository  # noqa: E402
+from store.repositories.teams import TeamRepository  # noqa: E402
 from store.settings import Settings  # noqa: E402
+from store.tokens import KEY, START, digest, new_token, read_secret  # noqa: E402
 from tests.service.conftest import KINDS, RABBITMQ, REDIS, create_database, drop_database  # noqa: E402
 from tests.service.running import service, wait_until  # noqa: E402
 
 CASE = (ROOT / "examples" / "hanging-riser-case1.yaml").read_text()
+ALL_KEYS = "SD_LOAD_KEYS"
 ANALYSES = ["statics", "frequency_domain"]
 BARE = """
 import json, sys, time
@@ -63,7 +72,8 @@ def bare() -> float:
 
 
 @contextlib.contextmanager
-def started(kind: str, *options: str) -> Iterator[httpx.Client]:
+def started(kind: str, *options: str, accounts: int = 0) -> Iterator[httpx.Client]:
+    """The service, and a client of its first member; the keys of all are in the environment of children."""
     name = f"sd_load_{uuid.uuid4().hex[:10]}"
     with tempfile.TemporaryDirectory(prefix="sd-load-", ignore_cleanup_errors=True) as folder:
         given: dict[str, object] = {"data_dir": Path(folder), "queue_prefix": name}
@@ -71,11 +81,35 @@ def started(kind: str, *options: str) -> Iterator[httpx.Client]:
             given["database_url"] = create_database(name)
             given["broker_url"] = REDIS if kind == "postgres-redis" else RABBITMQ
         try:
-            with service(Settings.model_validate(given), False, *options) as client:
+            settings = Settings.model_validate(given)
+            with service(settings, False, *options) as client:
+                keys = team_of(settings, accounts) if accounts else []
+                os.environ[ALL_KEYS] = " ".join(keys)
+                if keys:
+                    client.headers["authorization"] = f"Bearer {keys[0]}"
+                    wait_until(lambda: client.get("/api/v1/me").json().get("user"), 10)  # it has seen that there are
                 yield client
         finally:
             if kind != "embedded":
                 drop_database(name)
+
+
+def team_of(settings: Settings, members: int) -> list[str]:
+    """So many members of the one team, the first its owner, the others editors; a key of each."""
+    database, secret, keys = Database(settings.database), read_secret(settings), []
+    with database.write() as session:
+        accounts, teams = AccountRepository(session), TeamRepository(session)
+        for number in range(members):
+            user = accounts.add(f"member{number}@example.org", f"Member {number}", "no password", number == 0)
+            teams.join(DEFAULT_TEAM, user.id, "editor" if number else "owner")
+            keys.append(new_token(KEY))
+            accounts.add_key(
+                ApiKey(
+                    user_id=user.id, name="load", scope=ADMIN, start=keys[-1][:START], digest=digest(keys[-1], secret)
+                )
+            )
+    database.close()
+    return keys
 
 
 def case_of(number: int) -> str:
@@ -115,8 +149,9 @@ def overhead(client: httpx.Client, runs: int, alone: float) -> dict[str, float]:
 # -- 100 clients
 
 
-async def _get(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, path: str) -> int:
-    writer.write(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nAccept-Encoding: identity\r\n\r\n".encode())
+async def _get(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, path: str, key: str) -> int:
+    who = f"Authorization: Bearer {key}\r\n" if key else ""
+    writer.write(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\n{who}Accept-Encoding: identity\r\n\r\n".encode())
     await writer.drain()
     head = await reader.readuntil(b"\r\n\r\n")
     length = next(line for line in head.lower().split(b"\r\n") if line.startswith(b"content-length"))
@@ -125,14 +160,14 @@ async def _get(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, path:
 
 
 async def _poll(
-    port: int, paths: list[str], stop: asyncio.Event, reads: list[tuple[float, float]], bad: list[int]
+    port: int, key: str, paths: list[str], stop: asyncio.Event, reads: list[tuple[float, float]], bad: list[int]
 ) -> None:
     await asyncio.sleep(random.random())
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     chance = random.Random()
     while not stop.is_set():
         began = time.monotonic()
-        status = await _get(reader, writer, chance.choice(paths))
+        status = await _get(reader, writer, chance.choice(paths), key)
         took = time.monotonic() - began
         reads.append((began, took))
         if status != 200:
@@ -147,9 +182,11 @@ def poll(port: int, clients: int, ids: list[str]) -> None:
     bad: list[int] = []
     paths = [f"/api/v1/runs/{run_id}" for run_id in ids] * 3 + ["/api/v1/runs?limit=50"] * len(ids)
 
+    keys = os.environ.get(ALL_KEYS, "").split() or [""] * clients
+
     async def all_of_them() -> None:
         stop = asyncio.Event()
-        clients_at_work = asyncio.gather(*(_poll(port, paths, stop, reads, bad) for _ in range(clients)))
+        clients_at_work = asyncio.gather(*(_poll(port, keys[n], paths, stop, reads, bad) for n in range(clients)))
         await asyncio.to_thread(sys.stdin.read)
         stop.set()
         await clients_at_work
@@ -228,6 +265,7 @@ def main() -> None:
     parser.add_argument("--clients", type=int, default=100)
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--api-processes", type=int, default=1)
+    parser.add_argument("--accounts", action="store_true", help="everybody who asks has a key")
     parser.add_argument("--poll", nargs="*", help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.poll:
@@ -238,16 +276,15 @@ def main() -> None:
     for kind in options.kind:
         given = ("--workers", str(options.workers), "--api-processes", str(options.api_processes))
         before = cpu_times()
-        with started(kind, *given) as client:
+        with started(kind, *given, accounts=options.clients if options.accounts else 0) as client:
             finished(client, submit(client, 999_999))  # workers are awake
             found = overhead(client, 30, alone)
             for one_by_one in (False, True):
                 found |= load(client, options.runs, options.clients, options.workers, alone, one_by_one)
             found |= queue(client, 10_000)
-        print(
-            f"{kind}, {options.api_processes} API process(es) (load {os.getloadavg()[0]:.1f}, stolen {stolen(before):.0%}): "
-            + ", ".join(f"{name} {value:.4g}" for name, value in found.items())
-        )
+        who = f"{kind}{', accounts' if options.accounts else ''}, {options.api_processes} API process(es)"
+        machine = f"(load {os.getloadavg()[0]:.1f}, stolen {stolen(before):.0%})"
+        print(f"{who} {machine}: " + ", ".join(f"{name} {value:.4g}" for name, value in found.items()))
     return None
 
 

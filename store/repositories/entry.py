@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import timedelta
+from datetime import datetime, timedelta
 from typing import Any
 
-from sqlalchemy import select, update
+from sqlalchemy import BindParameter, bindparam, select, update
 from sqlalchemy.orm import Session
 
 from ..clock import utc_now
@@ -22,6 +22,35 @@ PLACES: dict[str, Any] = {
     "study_id": Study,
 }  # fmt: skip
 """Parameters of addresses that name a row, and so the project to look in."""
+
+
+# Every request asks these: made once, since to put them together takes longer than to execute them.
+_DIGEST: BindParameter[str] = bindparam("digest")
+_NOW: BindParameter[datetime] = bindparam("now")
+_SIGN_IN = (
+    select(SignIn, User)
+    .join(User, User.id == SignIn.user_id)
+    .where(SignIn.digest == _DIGEST, SignIn.expires_at > _NOW, User.disabled_at.is_(None))
+)
+_KEY = (
+    select(ApiKey, User)
+    .join(User, User.id == ApiKey.user_id)
+    .where(ApiKey.digest == _DIGEST, ApiKey.revoked_at.is_(None), User.disabled_at.is_(None))
+    .where(ApiKey.expires_at.is_(None) | (ApiKey.expires_at > _NOW))
+)
+_SHARE = (
+    select(Share)
+    .where(Share.digest == _DIGEST, Share.revoked_at.is_(None))
+    .where(Share.expires_at.is_(None) | (Share.expires_at > _NOW))
+)
+_HOMES = (
+    select(Team.id, Team.name, Project.id, Project.name, Membership.role)
+    .join(Project, Project.team_id == Team.id)
+    .join(Membership, Membership.team_id == Team.id)
+    .where(Membership.user_id == bindparam("user"))
+    .order_by(Team.id, Project.id)
+)
+_HOMES_IN_TEAM = _HOMES.where(Team.id == bindparam("team"))
 
 
 @dataclass(frozen=True)
@@ -45,21 +74,15 @@ class EntryRepository:
         return self.session.scalar(select(User.id).limit(1)) is not None
 
     def signed_in(self, digest: str) -> tuple[SignIn, User] | None:
-        good = (SignIn.digest == digest) & (SignIn.expires_at > utc_now()) & User.disabled_at.is_(None)
-        found = self.session.execute(select(SignIn, User).join(User, User.id == SignIn.user_id).where(good))
-        row = found.one_or_none()
+        row = self.session.execute(_SIGN_IN, {"digest": digest, "now": utc_now()}).one_or_none()
         return None if row is None else (row[0], row[1])
 
     def key(self, digest: str) -> tuple[ApiKey, User] | None:
-        good = (ApiKey.digest == digest) & ApiKey.revoked_at.is_(None) & User.disabled_at.is_(None)
-        good &= ApiKey.expires_at.is_(None) | (ApiKey.expires_at > utc_now())
-        row = self.session.execute(select(ApiKey, User).join(User, User.id == ApiKey.user_id).where(good)).one_or_none()
+        row = self.session.execute(_KEY, {"digest": digest, "now": utc_now()}).one_or_none()
         return None if row is None else (row[0], row[1])
 
     def share(self, digest: str) -> Share | None:
-        good = (Share.digest == digest) & Share.revoked_at.is_(None)
-        good &= Share.expires_at.is_(None) | (Share.expires_at > utc_now())
-        return self.session.scalars(select(Share).where(good)).one_or_none()
+        return self.session.scalars(_SHARE, {"digest": digest, "now": utc_now()}).one_or_none()
 
     def touch(self, row: SignIn | ApiKey | Share) -> None:
         model = type(row)
@@ -67,16 +90,9 @@ class EntryRepository:
 
     def homes(self, user_id: str, team_id: str | None = None) -> list[Home]:
         """The projects of one's teams, oldest first; of one team only where it is named."""
-        query = (
-            select(Team.id, Team.name, Project.id, Project.name, Membership.role)
-            .join(Project, Project.team_id == Team.id)
-            .join(Membership, Membership.team_id == Team.id)
-            .where(Membership.user_id == user_id)
-            .order_by(Team.id, Project.id)
-        )
-        if team_id is not None:
-            query = query.where(Team.id == team_id)
-        return [Home(*row) for row in self.session.execute(query)]
+        if team_id is None:
+            return [Home(*row) for row in self.session.execute(_HOMES, {"user": user_id})]
+        return [Home(*row) for row in self.session.execute(_HOMES_IN_TEAM, {"user": user_id, "team": team_id})]
 
     def all_homes(self) -> list[Home]:
         """What the one person of a service without accounts may enter: everything."""

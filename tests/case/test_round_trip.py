@@ -6,6 +6,7 @@ import json
 import re
 from pathlib import Path
 
+import jsonschema_rs
 import pytest
 
 from solver.case import Case, load_case, to_yaml
@@ -85,5 +86,8 @@ def test_the_schema_says_units_and_limits() -> None:
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=IDS)
 def test_examples_validate_against_the_schema(path: Path) -> None:
-    jsonschema = pytest.importorskip("jsonschema")
-    jsonschema.validate(json.loads(load_case(path.read_bytes()).canonical()), Case.model_json_schema())
+    schema = jsonschema_rs.validator_for(Case.model_json_schema())
+    case = json.loads(load_case(path.read_bytes()).canonical())
+    schema.validate(case)
+    with pytest.raises(jsonschema_rs.ValidationError, match="depth"):
+        schema.validate(case | {"environment": case["environment"] | {"depth": []}})

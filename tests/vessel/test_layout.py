@@ -104,6 +104,23 @@ def test_parts_that_do_not_fit_are_named(name, change, text, tmp_path):
             read_bytes(payload, "f.nc")
 
 
+def test_whatever_variable_is_missing_the_file_is_refused_or_read():
+    xarray = pytest.importorskip("xarray")
+    data = sets.whole()
+    own = {"mean_drift_omega": data.omega, "mean_drift": data.mean_drift, "mean_drift_headings": data.headings}
+    payload = dump_netcdf(dataclasses.replace(data, **own))
+    dataset = xarray.open_dataset(io.BytesIO(payload), engine="scipy").load()
+    refused = {}
+    for name in dataset.variables:
+        try:
+            read_bytes(bytes(dataset.drop_vars(name).to_netcdf(engine="scipy")), "f.nc")
+        except DataError as error:
+            refused[name] = str(error)
+    for axis in ("qtf_omega", "qtf_direction", "mean_drift_direction"):
+        assert refused[axis] == f"f.nc: {axis} is missing"
+    assert "RAO" not in refused  # what is beside the coefficients may be absent
+
+
 @pytest.mark.parametrize("turn", [-np.pi, np.pi, np.nan])
 def test_headings_of_the_drift_beyond_the_turn_are_refused(turn):
     """Between -180 and 90 degrees at steps of 90 an interpolation round the circle would go astray."""

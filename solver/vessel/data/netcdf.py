@@ -190,7 +190,9 @@ def vector3(dataset: Dataset, variable: str, name: str) -> Array | None:
 
 
 def numbers(dataset: Dataset, variable: str, name: str) -> Array:
-    """The real values of a variable that is there. Raises DataError when it holds none."""
+    """The real values of a variable. Raises DataError when it is not there or holds none."""
+    if variable not in dataset:
+        raise DataError(f"{name}: {variable} is missing")
     values = dataset[variable].values
     if values is None or np.iscomplexobj(values):
         raise DataError(f"{name}: {variable} does not hold numbers")

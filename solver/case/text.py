@@ -26,6 +26,7 @@ class _Loader(yaml.CSafeLoader if hasattr(yaml, "CSafeLoader") else yaml.SafeLoa
 
 _Loader.yaml_implicit_resolvers = {}
 _CORE: dict[str, re.Pattern[str]] = {}
+_FIRST: dict[str, list[str]] = {}
 for _tag, _pattern, _first in (
     ("tag:yaml.org,2002:bool", r"^(?:true|True|TRUE|false|False|FALSE)$", "tTfF"),
     ("tag:yaml.org,2002:int", r"^[-+]?[0-9]+$", "-+0123456789"),
@@ -37,8 +38,8 @@ for _tag, _pattern, _first in (
     ("tag:yaml.org,2002:null", r"^(?:~|null|Null|NULL|)$", ["~", "n", "N", ""]),
     ("tag:yaml.org,2002:merge", r"^(?:<<)$", "<"),
 ):
-    _CORE[_tag] = re.compile(_pattern)
-    _Loader.add_implicit_resolver(_tag, _CORE[_tag], list(_first))
+    _CORE[_tag], _FIRST[_tag] = re.compile(_pattern), list(_first)
+    _Loader.add_implicit_resolver(_tag, _CORE[_tag], _FIRST[_tag])
 
 
 def _int(loader: Any, node: yaml.ScalarNode) -> int | float:
@@ -177,6 +178,30 @@ def with_line(error: FieldError, lines: dict[tuple[str | int, ...], int]) -> Fie
     return FieldError(error.loc, error.message, error.value, lines.get(loc))
 
 
+class _Dumper(yaml.SafeDumper):
+    """Safe dumper that quotes whatever this reader, or one of YAML 1.1, would not take for the text it is."""
+
+
+for _tag, _first in _FIRST.items():
+    _Dumper.add_implicit_resolver(_tag, _CORE[_tag], _first)
+
+
+def _str(dumper: Any, text: str) -> yaml.ScalarNode:
+    """YAML's rarer line ends would be read as other ones, unless they are escaped."""
+    style = '"' if re.search("[\x85\u2028\u2029]", text) else None
+    node: yaml.ScalarNode = dumper.represent_scalar("tag:yaml.org,2002:str", text, style=style)
+    return node
+
+
+_Dumper.add_representer(str, _str)
+
+
+def write_text(data: Any, **style: Any) -> str:
+    """Plain data as YAML that `read_text` reads back as they are; `style` as in yaml.dump."""
+    text: str = yaml.dump(data, Dumper=_Dumper, sort_keys=False, allow_unicode=True, **style)
+    return text
+
+
 def to_yaml(case: Case) -> str:
     """The case as YAML in SI, angles as `… rad`; reads back to an equal case."""
-    return yaml.safe_dump(json.loads(case.canonical()), sort_keys=False, allow_unicode=True)
+    return write_text(json.loads(case.canonical()))

@@ -16,6 +16,21 @@ from .decks import ROOT
 from .test_moordyn_write import cases
 
 EXAMPLES = sorted((ROOT / "examples").glob("*.yaml"))
+HARD = [
+    "1e5",
+    "1.E5",
+    "-.5",
+    "+.5e-1",
+    "0123456789012345678901",
+    "1:30",
+    "yes",
+    "~",
+    "<<",
+    "a: b",
+    "1\x85",
+    "\u2028",
+    "01",
+]
 finite = st.floats(min_value=1e-12, max_value=1e12, allow_nan=False, allow_infinity=False)
 angle = st.floats(-7.0, 7.0).map(lambda value: f"{value!r} rad")
 
@@ -35,6 +50,21 @@ def _there_and_back(case: Case) -> None:
 @pytest.mark.parametrize("path", EXAMPLES, ids=[path.stem for path in EXAMPLES])
 def test_examples(path: Any) -> None:
     _there_and_back(load_case(path.read_bytes()))
+
+
+@pytest.mark.parametrize("text", HARD)
+def test_texts_that_look_like_something_else(text: str) -> None:
+    data = json.loads(load_case((ROOT / "examples" / "hanging-riser-case1.yaml").read_bytes()).canonical())
+    _there_and_back(parse_case(data | {"description": text}))
+
+
+@pytest.mark.parametrize("name", ["1e5", "1E5", "0e0", "01", "yes", "null", "12345678901234567890"])
+def test_names_that_look_like_something_else(name: str) -> None:
+    data = json.loads(load_case((ROOT / "examples" / "hanging-riser-case1.yaml").read_bytes()).canonical())
+    (line,) = data["lines"].values()
+    case = parse_case(data | {"name": name, "lines": {name: line}})
+    assert list(load_case(to_yaml(case)).lines) == [name]
+    _there_and_back(case)
 
 
 @st.composite

@@ -8,11 +8,9 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-import yaml
-
 from ...case import Case, parse_case
 from ...case.environment import Environment
-from ...case.text import read_text
+from ...case.text import read_text, write_text
 from ...case.vessel import Vessel
 from ...outcome import CaseError, FieldError
 from .deck import Deck, Faults, parse_deck, parse_number
@@ -95,7 +93,7 @@ def _finished(data: dict[str, Any], report: Report) -> Imported:
         if not report.missing:
             raise
         errors = tuple(error.errors)
-    text = yaml.safe_dump(data, sort_keys=False, allow_unicode=True, default_flow_style=None, width=160)
+    text = write_text(data, default_flow_style=None, width=160)
     return Imported(data, case, report.comment() + text, report, errors)
 
 

@@ -1,4 +1,6 @@
-"""What holds for all tests: kernels are compiled before the first, and Hypothesis sets no time limit on an example."""
+"""What holds for all tests: kernels are compiled before the first; Hypothesis sets no time limit on an example, and
+tries the same examples each time, so that a change is judged by itself. SLOWDRIFT_FUZZ=1 draws new ones, and more
+means as many times more where files are spoilt."""
 
 import os
 import subprocess
@@ -7,7 +9,7 @@ import sys
 import pytest
 from hypothesis import settings
 
-settings.register_profile("untimed", deadline=None)
+settings.register_profile("untimed", deadline=None, derandomize="SLOWDRIFT_FUZZ" not in os.environ)
 settings.load_profile("untimed")
 
 WARM = "from solver.run import warm_up, warm_up_time_domain; print(f'{warm_up() + warm_up_time_domain():.0f}')"

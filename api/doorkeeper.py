@@ -79,12 +79,10 @@ class Doorkeeper:
         if not is_token(token, KEY):
             return None
         with self.context.database.read() as session:
-            entry = EntryRepository(session)
-            found = entry.key(digest(token, self.context.secret))
-            if found is None:
-                return None
-            key, user = found
-            homes = tuple(entry.homes(user.id, key.team_id))
+            found = EntryRepository(session).key(digest(token, self.context.secret))
+        if found is None:
+            return None
+        key, user, homes = found
         self._touch(key)
         actor = f"{user.email} (key {key.name})"
         return Principal("key", actor, user, key.id, key.scope, None, homes)
@@ -93,12 +91,10 @@ class Doorkeeper:
         if not is_token(token, SESSION):
             return None
         with self.context.database.read() as session:
-            entry = EntryRepository(session)
-            found = entry.signed_in(digest(token, self.context.secret))
-            if found is None:
-                return None
-            row, user = found
-            homes = tuple(entry.homes(user.id))
+            found = EntryRepository(session).signed_in(digest(token, self.context.secret))
+        if found is None:
+            return None
+        row, user, homes = found
         self._touch(row)
         return Principal("session", user.email, user, row.id, None, row.project_id, homes)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Any
 
-from sqlalchemy import BindParameter, bindparam, select, update
+from sqlalchemy import BindParameter, Select, bindparam, select, update
 from sqlalchemy.orm import Session
 
 from ..clock import utc_now
@@ -27,30 +27,34 @@ PLACES: dict[str, Any] = {
 # Every request asks these: made once, since to put them together takes longer than to execute them.
 _DIGEST: BindParameter[str] = bindparam("digest")
 _NOW: BindParameter[datetime] = bindparam("now")
+_PLACE = (Team.id, Team.name, Project.id, Project.name, Membership.role)
 _SIGN_IN = (
-    select(SignIn, User)
+    select(SignIn, User, *_PLACE)
     .join(User, User.id == SignIn.user_id)
+    .outerjoin(Membership, Membership.user_id == User.id)
+    .outerjoin(Team, Team.id == Membership.team_id)
+    .outerjoin(Project, Project.team_id == Team.id)
     .where(SignIn.digest == _DIGEST, SignIn.expires_at > _NOW, User.disabled_at.is_(None))
+    .order_by(Team.id, Project.id)
 )
 _KEY = (
-    select(ApiKey, User)
+    select(ApiKey, User, *_PLACE)
     .join(User, User.id == ApiKey.user_id)
+    .outerjoin(
+        Membership,
+        (Membership.user_id == User.id) & (ApiKey.team_id.is_(None) | (ApiKey.team_id == Membership.team_id)),
+    )
+    .outerjoin(Team, Team.id == Membership.team_id)
+    .outerjoin(Project, Project.team_id == Team.id)
     .where(ApiKey.digest == _DIGEST, ApiKey.revoked_at.is_(None), User.disabled_at.is_(None))
     .where(ApiKey.expires_at.is_(None) | (ApiKey.expires_at > _NOW))
+    .order_by(Team.id, Project.id)
 )
 _SHARE = (
     select(Share)
     .where(Share.digest == _DIGEST, Share.revoked_at.is_(None))
     .where(Share.expires_at.is_(None) | (Share.expires_at > _NOW))
 )
-_HOMES = (
-    select(Team.id, Team.name, Project.id, Project.name, Membership.role)
-    .join(Project, Project.team_id == Team.id)
-    .join(Membership, Membership.team_id == Team.id)
-    .where(Membership.user_id == bindparam("user"))
-    .order_by(Team.id, Project.id)
-)
-_HOMES_IN_TEAM = _HOMES.where(Team.id == bindparam("team"))
 
 
 @dataclass(frozen=True)
@@ -73,13 +77,19 @@ class EntryRepository:
     def any_account(self) -> bool:
         return self.session.scalar(select(User.id).limit(1)) is not None
 
-    def signed_in(self, digest: str) -> tuple[SignIn, User] | None:
-        row = self.session.execute(_SIGN_IN, {"digest": digest, "now": utc_now()}).one_or_none()
-        return None if row is None else (row[0], row[1])
+    def signed_in(self, digest: str) -> tuple[SignIn, User, tuple[Home, ...]] | None:
+        """The session, whose it is, and the projects of their teams, oldest first."""
+        return self._with_homes(_SIGN_IN, digest)
 
-    def key(self, digest: str) -> tuple[ApiKey, User] | None:
-        row = self.session.execute(_KEY, {"digest": digest, "now": utc_now()}).one_or_none()
-        return None if row is None else (row[0], row[1])
+    def key(self, digest: str) -> tuple[ApiKey, User, tuple[Home, ...]] | None:
+        """The key, whose it is, and the projects it opens, oldest first."""
+        return self._with_homes(_KEY, digest)
+
+    def _with_homes(self, query: Select[*tuple[Any, ...]], digest: str) -> tuple[Any, User, tuple[Home, ...]] | None:
+        rows = self.session.execute(query, {"digest": digest, "now": utc_now()}).all()
+        if not rows:
+            return None
+        return rows[0][0], rows[0][1], tuple(Home(*row[2:]) for row in rows if row[4] is not None)
 
     def share(self, digest: str) -> Share | None:
         return self.session.scalars(_SHARE, {"digest": digest, "now": utc_now()}).one_or_none()
@@ -88,11 +98,16 @@ class EntryRepository:
         model = type(row)
         self.session.execute(update(model).where(model.id == row.id).values(last_used_at=utc_now()))
 
-    def homes(self, user_id: str, team_id: str | None = None) -> list[Home]:
-        """The projects of one's teams, oldest first; of one team only where it is named."""
-        if team_id is None:
-            return [Home(*row) for row in self.session.execute(_HOMES, {"user": user_id})]
-        return [Home(*row) for row in self.session.execute(_HOMES_IN_TEAM, {"user": user_id, "team": team_id})]
+    def homes(self, user_id: str) -> list[Home]:
+        """The projects of one's teams, oldest first."""
+        query = (
+            select(*_PLACE)
+            .join(Project, Project.team_id == Team.id)
+            .join(Membership, Membership.team_id == Team.id)
+            .where(Membership.user_id == user_id)
+            .order_by(Team.id, Project.id)
+        )
+        return [Home(*row) for row in self.session.execute(query)]
 
     def all_homes(self) -> list[Home]:
         """What the one person of a service without accounts may enter: everything."""

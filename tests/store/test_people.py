@@ -10,7 +10,7 @@ from store.clock import utc_now
 from store.database import Database
 from store.errors import ConflictError, NotFoundError, SlowdriftError
 from store.models import DEFAULT_TEAM
-from store.people import EDITOR, OWNER, VIEWER, Invitation, User
+from store.people import EDITOR, OWNER, READ, VIEWER, ApiKey, Invitation, User
 from store.repositories.accounts import AccountRepository
 from store.repositories.entry import EntryRepository
 from store.repositories.teams import TeamRepository
@@ -101,9 +101,24 @@ def test_sessions_and_homes(database: Database) -> None:
         found = entry.signed_in("good")
         assert found is not None
         assert found[1].id == user.id
-        assert [(home.team_name, home.role) for home in entry.homes(user.id)] == [("default", VIEWER)]
-        assert entry.homes(user.id, "f" * 32) == []
+        assert [(home.team_name, home.role) for home in found[2]] == [("default", VIEWER)]
+        assert list(found[2]) == entry.homes(user.id)
         assert [home.role for home in entry.all_homes()] == [OWNER]
+
+
+def test_a_key_opens_its_users_teams_or_the_one_it_names(database: Database) -> None:
+    (member,) = add(database, "a", role=VIEWER)
+    with database.write() as session:
+        accounts, teams = AccountRepository(session), TeamRepository(session)
+        nobody = accounts.add("b@x.org", "b", None, False)
+        second = teams.add("second", member.id).id
+        for name, user, team in (("all", member, None), ("one", member, second), ("none", nobody, None)):
+            accounts.add_key(ApiKey(user_id=user.id, name=name, scope=READ, start="", digest=name, team_id=team))
+    with database.read() as session:
+        entry = EntryRepository(session)
+        opened = {name: entry.key(name) for name in ("all", "one", "none", "other")}
+    homes = {name: [(home.team_name, home.role) for home in found[2]] for name, found in opened.items() if found}
+    assert homes == {"all": [("default", VIEWER), ("second", OWNER)], "one": [("second", OWNER)], "none": []}
 
 
 def test_a_team_goes_with_its_projects(database: Database) -> None:

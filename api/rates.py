@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import logging
 import time
-from typing import cast
+from typing import Any, cast
 
-import limits.aio.storage
-import limits.aio.strategies
 from limits import RateLimitItemPerMinute
-from limits.errors import StorageError
+from limits.aio.storage import Storage
+from limits.aio.strategies import SlidingWindowCounterRateLimiter as SharedLimiter
 from limits.storage import MemoryStorage, storage_from_string
 from limits.strategies import SlidingWindowCounterRateLimiter
+from redis.asyncio import BlockingConnectionPool
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from .guard import problem
 
+REDIS_SECONDS = 0.5
+"""How long an answer of Redis is waited for."""
 REDIS_AWAY = 10.0
-"""Seconds a Redis that did not answer is not asked again: requests must not wait for it one after the other."""
+"""Seconds between two attempts to reach a Redis that did not answer; each is one request's."""
+CONNECTIONS = 16
 log = logging.getLogger(__name__)
 
 
@@ -31,8 +34,9 @@ class Rates:
         self._prefix = prefix
         self._item = RateLimitItemPerMinute(per_minute) if per_minute else None
         self._own = SlidingWindowCounterRateLimiter(MemoryStorage())
-        self._shared = _in_redis(broker_url) if broker_url.startswith("redis") else None
-        self._away_until = 0.0
+        self._shared = _in_redis(broker_url) if broker_url.startswith(("redis://", "rediss://")) else None
+        self._away = False
+        self._ask_again_at = 0.0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if self._item is None or scope["type"] != "http":
@@ -47,23 +51,37 @@ class Rates:
 
     async def _wait(self, item: RateLimitItemPerMinute, caller: str) -> int:
         """Counts the request; 0, or the seconds after which the caller may ask again."""
-        if self._shared and time.monotonic() >= self._away_until:
+        if self._shared and time.monotonic() >= self._ask_again_at:
+            if self._away:
+                self._ask_again_at = time.monotonic() + REDIS_AWAY  # the others do not wait for this one's answer
             try:
-                if await self._shared.hit(item, self._prefix, caller):
-                    return 0
-                return _seconds_to((await self._shared.get_window_stats(item, self._prefix, caller)).reset_time)
-            except StorageError as error:
-                self._away_until = time.monotonic() + REDIS_AWAY
-                log.warning("Requests are counted in this process only: %s", error)
+                wait = await self._wait_shared(self._shared, item, caller)
+            except Exception as error:  # whatever it is, it must not fail the request
+                self._redis_is_away(error)
+            else:
+                self._away, self._ask_again_at = False, 0.0
+                return wait
         if self._own.hit(item, caller):
             return 0
         return _seconds_to(self._own.get_window_stats(item, caller).reset_time)
 
+    async def _wait_shared(self, limiter: SharedLimiter, item: RateLimitItemPerMinute, caller: str) -> int:
+        if await limiter.hit(item, self._prefix, caller):
+            return 0
+        return _seconds_to((await limiter.get_window_stats(item, self._prefix, caller)).reset_time)
 
-def _in_redis(url: str) -> limits.aio.strategies.SlidingWindowCounterRateLimiter:
-    options: dict[str, float | str | bool] = {"socket_connect_timeout": 0.5, "socket_timeout": 0.5}
-    storage = storage_from_string(f"async+{url}", wrap_exceptions=True, implementation="redispy", **options)
-    return limits.aio.strategies.SlidingWindowCounterRateLimiter(cast(limits.aio.storage.Storage, storage))
+    def _redis_is_away(self, error: Exception) -> None:
+        if not self._away:
+            log.warning("Requests are counted in this process only: %s: %s", type(error).__name__, error)
+        self._away, self._ask_again_at = True, time.monotonic() + REDIS_AWAY
+
+
+def _in_redis(url: str) -> SharedLimiter:
+    """With a pool of its own: it waits for a free connection, where the usual one would say that there are too many."""
+    seconds = {"timeout": REDIS_SECONDS, "socket_connect_timeout": REDIS_SECONDS, "socket_timeout": REDIS_SECONDS}
+    pool = BlockingConnectionPool.from_url(url, max_connections=CONNECTIONS, **seconds)
+    options: dict[str, Any] = {"wrap_exceptions": True, "implementation": "redispy", "connection_pool": pool}
+    return SharedLimiter(cast(Storage, storage_from_string("async+redis://", **options)))
 
 
 def _seconds_to(moment: float) -> int:

@@ -1,6 +1,7 @@
 """What holds for all tests: kernels are compiled before the first; Hypothesis sets no time limit on an example, and
-tries the same examples each time, so that a change is judged by itself. SLOWDRIFT_FUZZ=1 draws new ones, and more
-means as many times more where files are spoilt."""
+tries the same examples each time, so that a change is judged by itself. With SLOWDRIFT_FUZZ=N in the environment it
+draws new ones, and in tests/vessel/test_wamit_fuzz.py N times as many.
+"""
 
 import os
 import subprocess

@@ -197,7 +197,7 @@ _Dumper.add_representer(str, _str)
 
 
 def write_text(data: Any, **style: Any) -> str:
-    """Plain data as YAML that `read_text` reads back as they are; `style` as in yaml.dump."""
+    """A mapping as YAML, its texts and numbers such that `read_text` reads the same; `style` as in yaml.dump."""
     text: str = yaml.dump(data, Dumper=_Dumper, sort_keys=False, allow_unicode=True, **style)
     return text
 

@@ -14,6 +14,7 @@ import pytest
 import zstandard
 from sqlalchemy.exc import OperationalError
 
+from api import rates as rates_module
 from api.main import create_app
 from api.rates import Rates
 from store import logs
@@ -65,35 +66,59 @@ def test_one_caller_cannot_take_all() -> None:
     assert TestClient(Rates(nothing, per_minute=0)).get("/").status_code == 200
 
 
-def asked_by_turns(times: int, *rates: Rates) -> list[httpx.Response]:
-    """Requests of one caller to processes that answer on one port, in one event loop."""
+async def asked(times: int, *rates: Rates) -> list[int]:
+    """So many requests of one caller at once, to processes that answer on one port by turns; the answers' statuses."""
 
-    async def ask() -> list[httpx.Response]:
-        answers = []
-        for number in range(times):
-            transport = httpx.ASGITransport(rates[number % len(rates)])
-            async with httpx.AsyncClient(transport=transport, base_url="http://localhost") as one:
-                answers.append(await one.get("/"))
-        return answers
+    async def ask(number: int) -> int:
+        transport = httpx.ASGITransport(rates[number % len(rates)])
+        async with httpx.AsyncClient(transport=transport, base_url="http://localhost") as one:
+            answer = await one.get("/")
+        assert answer.status_code == 200 or 1 <= int(answer.headers["retry-after"]) <= 61
+        return answer.status_code
 
-    return asyncio.run(ask())
+    return list(await asyncio.gather(*(ask(number) for number in range(times))))
 
 
 @pytest.mark.services
-def test_processes_count_a_caller_together_in_redis() -> None:
+@pytest.mark.parametrize("url", [REDIS, "redis://localhost"])
+def test_processes_count_a_caller_together_in_redis(url: str, caplog: pytest.LogCaptureFixture) -> None:
     need("Redis", 6379)
     prefix = f"sd_{uuid.uuid4().hex[:12]}"
-    together = [Rates(nothing, 5, REDIS, prefix) for _ in range(2)]
-    answers = asked_by_turns(8, *together)
-    assert [answer.status_code for answer in answers] == [200] * 5 + [429] * 3
-    assert 1 <= int(answers[-1].headers["retry-after"]) <= 61
-    assert asked_by_turns(1, Rates(nothing, 5, REDIS, prefix + "x"))[0].status_code == 200  # another service's
+
+    async def many() -> list[int]:
+        return await asked(300, *(Rates(nothing, 60, url, prefix) for _ in range(2)))
+
+    assert sorted(asyncio.run(many())) == [200] * 60 + [429] * 240
+    assert asyncio.run(asked(1, Rates(nothing, 60, url, prefix + "x"))) == [200]  # another service's
+    assert not caplog.text
 
 
-def test_without_its_redis_each_process_counts_and_nobody_waits(caplog: pytest.LogCaptureFixture) -> None:
-    answers = asked_by_turns(6, Rates(nothing, 5, "redis://127.0.0.1:1/0"))
-    assert [answer.status_code for answer in answers] == [200] * 5 + [429]
-    assert caplog.text.count("counted in this process only") == 1  # Redis was asked once, not six times
+def test_without_its_redis_each_process_counts(caplog: pytest.LogCaptureFixture) -> None:
+    assert sorted(asyncio.run(asked(6, Rates(nothing, 5, "redis://127.0.0.1:1/0")))) == [200] * 5 + [429]
+    assert caplog.text.count("counted in this process only") == 1
+
+
+def test_a_redis_that_does_not_answer_is_not_asked_by_everybody(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rates_module, "REDIS_SECONDS", 0.05)
+    reached: list[int] = []
+
+    async def silent(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        reached.append(1)
+        await reader.read()
+        writer.close()
+
+    async def go() -> list[list[int]]:
+        async with await asyncio.start_server(silent, "127.0.0.1", 0) as server:
+            rates = Rates(nothing, 5, f"redis://127.0.0.1:{server.sockets[0].getsockname()[1]}/0")
+            assert sorted(await asked(4, rates)) == [200] * 4
+            first = len(reached)
+            assert sorted(await asked(20, rates)) == [200] + [429] * 19
+            assert len(reached) == first > 0  # nobody asks it again for a while …
+            rates._ask_again_at = 0.0
+            await asked(20, rates)
+            return [reached[first:]]
+
+    assert asyncio.run(go()) == [[1]]  # … then one does
 
 
 def test_metrics_tell_queues_runs_and_requests(client: TestClient) -> None:

@@ -112,13 +112,22 @@ def test_a_key_opens_its_users_teams_or_the_one_it_names(database: Database) -> 
         accounts, teams = AccountRepository(session), TeamRepository(session)
         nobody = accounts.add("b@x.org", "b", None, False)
         second = teams.add("second", member.id).id
-        for name, user, team in (("all", member, None), ("one", member, second), ("none", nobody, None)):
-            accounts.add_key(ApiKey(user_id=user.id, name=name, scope=READ, start="", digest=name, team_id=team))
+        for name, user, team in (
+            ("all", member, None), ("one", member, second), ("none", nobody, None), ("not his", nobody, second),
+        ):  # fmt: skip
+            session.add(
+                ApiKey(user_id=user.id, name=name, scope=READ, start="", digest=name, team_id=team)
+            )  # one may have left the team since
     with database.read() as session:
         entry = EntryRepository(session)
-        opened = {name: entry.key(name) for name in ("all", "one", "none", "other")}
+        opened = {name: entry.key(name) for name in ("all", "one", "none", "not his", "other")}
     homes = {name: [(home.team_name, home.role) for home in found[2]] for name, found in opened.items() if found}
-    assert homes == {"all": [("default", VIEWER), ("second", OWNER)], "one": [("second", OWNER)], "none": []}
+    assert homes == {
+        "all": [("default", VIEWER), ("second", OWNER)],
+        "one": [("second", OWNER)],
+        "none": [],
+        "not his": [],
+    }
 
 
 def test_a_team_goes_with_its_projects(database: Database) -> None:

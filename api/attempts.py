@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import time
 from typing import cast
 
 from limits import RateLimitItem, parse
@@ -13,6 +12,8 @@ from limits.strategies import MovingWindowRateLimiter
 
 from store.errors import TooManyError
 from store.settings import Settings
+
+from .rates import seconds_to
 
 ONE_ACCOUNT_ONE_ADDRESS = "5 per minute"
 ONE_ADDRESS = "60 per 10 minutes"
@@ -37,7 +38,7 @@ class Attempts:
         """Raises TooManyError."""
         for item, keys in self._items(account, address):
             if not self._hit(item, keys):
-                wait = max(1, int(self._reset(item, keys) - time.time()) + 1)
+                wait = seconds_to(self._reset(item, keys))
                 raise TooManyError(f"Too many attempts; try again in {wait} s.", wait)
 
     def forgive(self, account: str, address: str) -> None:

@@ -63,12 +63,12 @@ class Rates:
                 return wait
         if self._own.hit(item, caller):
             return 0
-        return _seconds_to(self._own.get_window_stats(item, caller).reset_time)
+        return seconds_to(self._own.get_window_stats(item, caller).reset_time)
 
     async def _wait_shared(self, limiter: SharedLimiter, item: RateLimitItemPerMinute, caller: str) -> int:
         if await limiter.hit(item, self._prefix, caller):
             return 0
-        return _seconds_to((await limiter.get_window_stats(item, self._prefix, caller)).reset_time)
+        return seconds_to((await limiter.get_window_stats(item, self._prefix, caller)).reset_time)
 
     def _redis_is_away(self, error: Exception) -> None:
         if not self._away:
@@ -84,7 +84,8 @@ def _in_redis(url: str) -> SharedLimiter:
     return SharedLimiter(cast(Storage, storage_from_string("async+redis://", **options)))
 
 
-def _seconds_to(moment: float) -> int:
+def seconds_to(moment: float) -> int:
+    """From now, for the header retry-after: whole ones, at least 1."""
     return max(1, int(moment - time.time()) + 1)
 
 

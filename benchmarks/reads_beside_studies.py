@@ -8,22 +8,19 @@ every 0.5 ms, cli/api.py) and with Python's own 5 ms, ratios reported.
 from __future__ import annotations
 
 import argparse
-import json
 import os
-import subprocess
-import sys
 import tempfile
 import time
 from pathlib import Path
 
-import service_load
-from service_load import KINDS, ROOT, started, study, submit
+import httpx
+from service_load import KINDS, ROOT, end_polling, start_polling, started, study, submit, summary
 
 PYTHONS_OWN = "import sys\nsys.setswitchinterval = lambda seconds: None\n"
 Span = tuple[float, float]
 
 
-def timed_study(client: service_load.httpx.Client, runs: int, stiffness: float) -> Span:
+def timed_study(client: httpx.Client, runs: int, stiffness: float) -> Span:
     began = time.monotonic()
     study(client, runs, stiffness)
     return began, time.monotonic()
@@ -33,28 +30,20 @@ def measure(kind: str, clients: int) -> tuple[dict[str, float], dict[str, float]
     """Beside the studies of 500 runs, and beside that of 10 000."""
     with started(kind, "--workers", "0") as client:
         ids = [submit(client, number) for number in range(10)]
-        command = [sys.executable, service_load.__file__, "--poll", str(client.base_url.port), str(clients), *ids]
-        polling = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=ROOT)
-        time.sleep(3)
+        polling = start_polling(client, clients, ids)
         small = []
         for number in range(8):
             small.append(timed_study(client, 500, 2.0e9 + 1.0e6 * number))
             time.sleep(0.5)
         large = [timed_study(client, 10_000, 1.0e9)]
-        found = json.loads(polling.communicate()[0])
-    assert not found["bad"], found["bad"]
-    return summary(found["reads"], small), summary(found["reads"], large)
+        reads = end_polling(polling)
+    return beside(reads, small), beside(reads, large)
 
 
-def summary(reads: list[Span], spans: list[Span]) -> dict[str, float]:
-    times = sorted(1e3 * took for when, took in reads if any(a < when + took and when < z for a, z in spans))
-    return {
-        "reads": len(times),
-        "p50_ms": times[len(times) // 2],
-        "p99_ms": times[int(0.99 * len(times))],
-        "max_ms": times[-1],
-        "accepted_s": sum(z - a for a, z in spans) / len(spans),
-    }
+def beside(reads: list[Span], spans: list[Span]) -> dict[str, float]:
+    """Of the reads under way in one of the spans, and how long the spans were."""
+    met = [took for when, took in reads if any(a < when + took and when < z for a, z in spans)]
+    return summary(met) | {"accepted_s": sum(z - a for a, z in spans) / len(spans)}
 
 
 def main() -> None:
@@ -75,7 +64,7 @@ def main() -> None:
                     print(
                         f"{kind}, studies of {runs} runs: "
                         + ", ".join(f"{name} {now[name]:.3g} (5 ms: {own[name]:.3g})" for name in now)
-                        + f"; p99 times {now['p99_ms'] / own['p99_ms']:.2f}"
+                        + f"; p99 times {now['read_p99_ms'] / own['read_p99_ms']:.2f}"
                     )
 
 

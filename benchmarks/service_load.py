@@ -195,13 +195,36 @@ def poll(port: int, clients: int, ids: list[str]) -> None:
     print(json.dumps({"reads": reads, "bad": bad}))
 
 
+def start_polling(client: httpx.Client, clients: int, ids: list[str]) -> subprocess.Popen[str]:
+    """In a process of its own; gives it when the clients are at work."""
+    command = [sys.executable, __file__, "--poll", str(client.base_url.port), str(clients), *ids]
+    polling = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=ROOT)
+    time.sleep(3)
+    return polling
+
+
+def end_polling(polling: subprocess.Popen[str]) -> list[tuple[float, float]]:
+    """When each read began and what it took, on this machine's monotonic clock."""
+    found = json.loads(polling.communicate()[0])
+    assert not found["bad"], found["bad"]
+    return [(when, took) for when, took in found["reads"]]
+
+
+def summary(seconds: list[float]) -> dict[str, float]:
+    times = sorted(1e3 * took for took in seconds)
+    return {
+        "reads": len(times),
+        "read_p50_ms": times[len(times) // 2],
+        "read_p99_ms": times[int(0.99 * len(times))],
+        "read_max_ms": times[-1],
+    }
+
+
 def load(
     client: httpx.Client, runs: int, clients: int, workers: int, alone: float, one_by_one: bool
 ) -> dict[str, float]:
     first = [submit(client, 200_000 + number) for number in range(10)]
-    command = [sys.executable, __file__, "--poll", str(client.base_url.port), str(clients), *first]
-    polling = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=ROOT)
-    time.sleep(3)
+    polling = start_polling(client, clients, first)
     began = time.monotonic()
     if one_by_one:
         for number in range(runs):
@@ -211,14 +234,8 @@ def load(
     submitted = time.monotonic() - began
     wait_until(lambda: client.get("/api/v1/runs?state=queued,running&limit=1").json()["total"] == 0, 600)
     done = time.monotonic() - began
-    found = json.loads(polling.communicate()[0])
-    times = sorted(took for when, took in found["reads"] if began <= when < began + done)
-    assert not found["bad"], found["bad"]
-    measured = {
-        "reads": len(times),
-        "read_p50_ms": 1e3 * times[len(times) // 2],
-        "read_p99_ms": 1e3 * times[int(0.99 * len(times))],
-        "read_max_ms": 1e3 * times[-1],
+    reads = end_polling(polling)
+    measured = summary([took for when, took in reads if began <= when < began + done]) | {
         "submit_s": submitted,
         "through_s": done,
         "per_run_over_solver_ms": 1e3 * (done * workers / runs - alone),

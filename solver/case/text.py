@@ -26,7 +26,6 @@ class _Loader(yaml.CSafeLoader if hasattr(yaml, "CSafeLoader") else yaml.SafeLoa
 
 _Loader.yaml_implicit_resolvers = {}
 _CORE: dict[str, re.Pattern[str]] = {}
-_FIRST: dict[str, list[str]] = {}
 for _tag, _pattern, _first in (
     ("tag:yaml.org,2002:bool", r"^(?:true|True|TRUE|false|False|FALSE)$", "tTfF"),
     ("tag:yaml.org,2002:int", r"^[-+]?[0-9]+$", "-+0123456789"),
@@ -38,8 +37,8 @@ for _tag, _pattern, _first in (
     ("tag:yaml.org,2002:null", r"^(?:~|null|Null|NULL|)$", ["~", "n", "N", ""]),
     ("tag:yaml.org,2002:merge", r"^(?:<<)$", "<"),
 ):
-    _CORE[_tag], _FIRST[_tag] = re.compile(_pattern), list(_first)
-    _Loader.add_implicit_resolver(_tag, _CORE[_tag], _FIRST[_tag])
+    _CORE[_tag] = re.compile(_pattern)
+    _Loader.add_implicit_resolver(_tag, _CORE[_tag], list(_first))
 
 
 def _int(loader: Any, node: yaml.ScalarNode) -> int | float:
@@ -182,8 +181,9 @@ class _Dumper(yaml.SafeDumper):
     """Safe dumper that quotes whatever this reader, or one of YAML 1.1, would not take for the text it is."""
 
 
-for _tag, _first in _FIRST.items():
-    _Dumper.add_implicit_resolver(_tag, _CORE[_tag], _first)
+for _letter, _resolvers in _Loader.yaml_implicit_resolvers.items():
+    for _tag, _regexp in _resolvers:
+        _Dumper.add_implicit_resolver(_tag, _regexp, [_letter])
 
 
 def _str(dumper: Any, text: str) -> yaml.ScalarNode:

@@ -82,7 +82,7 @@ def _frequency(result: dict[str, Any]) -> list[Table]:
         )
         for name, line in result["lines"].items():
             wf, lf = line["tension_std"]["wf"], line["tension_std"]["lf"]
-            values = (wf[0], wf[-1], lf[0], lf[-1], max(line["tension_most_probable_max"]))
+            values = (wf[0], wf[-1], lf[0], lf[-1], line["largest"]["tension"])
             table.add_row(name, *(f"{value / 1e3:.1f}" for value in values))
     else:
         table = _table("Tension, amplitude (kN)", "line", "end a", "end b", "largest", "mean")
@@ -110,8 +110,12 @@ def _time(result: dict[str, Any]) -> list[Table]:
         "LF σ end b",
         "least at end b",
         "largest at end b",
+        "largest at end a",
+        "anchor up, max.",
     )
     for name, line in result["lines"].items():
         wf, lf, end = line["tension_std"]["wf"], line["tension_std"]["lf"], line["end_b_tension"]
-        table.add_row(name, *(f"{value / 1e3:.1f}" for value in (wf[0], wf[-1], lf[-1], end["min"], end["max"])))
+        anchor = (line["end_a_tension"]["max"], line["anchor_vertical"]["max"])
+        values = (wf[0], wf[-1], lf[-1], end["min"], end["max"], *anchor)
+        table.add_row(name, *(f"{value / 1e3:.1f}" for value in values))
     return [*tables, table]

@@ -96,6 +96,13 @@ def _largest(values: Any) -> float | None:
     return max(values, default=None) if isinstance(values, list) else values
 
 
+def _with_ends(made: Mapping[str, Any], values: Any) -> float | None:
+    """The largest tension of a line with its ends; of an older summary, the largest along the line."""
+    if values is not None and made.get("largest"):
+        return float(made["largest"]["tension"])
+    return _largest(values)
+
+
 def _tensions(summary: Summary) -> Iterator[tuple[Key, Any]]:
     for domain, said in DOMAINS.items():
         for line, made in ((summary.get(domain) or {}).get("lines") or {}).items():
@@ -113,8 +120,10 @@ def _tensions(summary: Summary) -> Iterator[tuple[Key, Any]]:
 
 _EXTREMES: dict[Callable[[Mapping[str, Any]], float | None], str] = {
     lambda made: _largest(made.get("tension_amplitude")): "Largest amplitude of tension",
-    lambda made: _largest(made.get("tension_most_probable_max")): "Most probable maximum of tension",
+    lambda made: _with_ends(made, made.get("tension_most_probable_max")): "Most probable maximum of tension",
     lambda made: (made.get("end_b_tension") or {}).get("max"): "Largest tension at end b",
+    lambda made: (made.get("end_a_tension") or {}).get("max"): "Largest tension at end a",
+    lambda made: (made.get("anchor_vertical") or {}).get("max"): "Largest vertical force on the anchor",
 }
 
 

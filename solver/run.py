@@ -173,8 +173,9 @@ def _time_chunk(
         return Part({**about, "failures": {"time_domain": str(failure)}})
     most = max(line.nodes for line in static.lines)
     lines = [
-        {"name": line.name, "gap": most - line.nodes, "arc_length": line.element_arc.tolist()} for line in static.lines
-    ]
+        {"name": line.name, "gap": most - line.nodes, "arc_length": line.element_arc.tolist(), "length": line.length,
+         "anchor": line.anchor_end} for line in static.lines
+    ]  # fmt: skip
     omega, random = harmonic_omega(model.case), bool(model.case.environment.random)
     periodic = omega is None and whole_period(spec, timing.duration)
     part = time_part(record, timing, lines, low_border(model), omega, random, periodic)

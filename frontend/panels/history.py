@@ -21,7 +21,10 @@ from frontend.results import Results
 POINTS = 2000
 LINE = "line:"  # a response is a direction of the vessel, or this and the name of a line
 NOTE = "Drag over a stretch of time to see it in detail; a double click shows all of it."
-HEAD = ("Line", "end b, min.", "end b, max.", "least element", "largest element")
+HEAD = (
+    "Line", "end b, min.", "end b, max.", "least element", "largest element", "end a, max.", "anchor, up, max.",
+    "on the bed, min.",
+)  # fmt: skip
 
 
 def applies(results: Results) -> bool:
@@ -95,17 +98,25 @@ def told(summary: dict[str, Any]) -> str:
 
 
 def extremes_table(made: dict[str, Any]) -> Any:
-    """Per line, over all seeds and all time after the build-up, in kN."""
+    """Per line, over all seeds and all time after the build-up: forces in kN, lengths in m."""
     rows = []
     for name, line in (made.get("lines") or {}).items():
-        end = line.get("end_b_tension") or {}
+        end_b, end_a = line.get("end_b_tension") or {}, line.get("end_a_tension") or {}
         low, high = line.get("tension_min") or [], line.get("tension_max") or []
-        values = (end.get("min"), end.get("max"), min(low, default=None), max(high, default=None))
-        rows.append([name, *(MISSING if value is None else number(value / 1e3, 4) for value in values)])
+        forces = (
+            end_b.get("min"), end_b.get("max"), min(low, default=None), max(high, default=None), end_a.get("max"),
+            (line.get("anchor_vertical") or {}).get("max"),
+        )  # fmt: skip
+        bed = (line.get("grounded_length") or {}).get("min")
+        shown = [MISSING if value is None else number(value / 1e3, 4) for value in forces]
+        rows.append([name, *shown, MISSING if bed is None else number(bed, 4)])
     if not rows:
         return None
-    words = "Of all seeds. End b: the force on its support; elements: their axial force, the least and largest along the line."
-    return table("Extremes of tension [kN]", HEAD, rows, min_width=560, note=words)
+    words = (
+        "Of all seeds. End b, end a: the force on the support. Elements: their axial force, the least and largest along "
+        "the line. Anchor, up: largest vertical force of the line on its anchor, up positive."
+    )
+    return table("Extremes of tension [kN] and length on the bed [m]", HEAD, rows, min_width=760, note=words)
 
 
 def register(app: Dash) -> None:

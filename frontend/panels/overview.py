@@ -64,16 +64,23 @@ def _kn(value: float | None) -> str:
     return f"{_kilo(value)} kN"
 
 
-def _worst(lines: dict[str, Any], values: Any) -> tuple[float | None, str]:
-    """The largest value over all lines, and where: line and arc length."""
+def _worst(lines: dict[str, Any], values: Any, with_ends: bool) -> tuple[float | None, str]:
+    """The largest value over all lines, and where: line and arc length. with_ends : of tension itself, ends included."""
     best: tuple[float | None, str] = (None, "")
     for name, line in lines.items():
         peak, index = _peak(values(line))
+        arc = line.get("arc_length") or []
+        place = arc[index] if peak is not None and index < len(arc) else None
+        if with_ends and line.get("largest"):
+            peak, place = line["largest"]["tension"], line["largest"]["arc_length"]
         if peak is not None and (best[0] is None or peak > best[0]):
-            arc = line.get("arc_length") or []
-            where = f"{name}, {number(arc[index])} m from end a" if index < len(arc) else name
-            best = (peak, where)
+            best = (peak, f"{name}, {number(place)} m from end a" if place is not None else name)
     return best
+
+
+def _largest_of(line: dict[str, Any], values: list[float] | None) -> list[float] | None:
+    """The largest tension of a line with its ends, or what stands along it in an older summary."""
+    return [line["largest"]["tension"]] if line.get("largest") else values
 
 
 def cards(summary: dict[str, Any]) -> list[Any]:
@@ -84,13 +91,13 @@ def cards(summary: dict[str, Any]) -> list[Any]:
         made.append(figure_card("Static offset", offset, "horizontal, from the design position"))
     static, dynamic = _static_lines(summary), _frequency_lines(summary)
     candidates = (
-        ("Largest static tension", static, lambda line: line.get("tension")),
-        ("Largest σ of tension", dynamic, _total),
-        ("Largest tension amplitude", dynamic, lambda line: line.get("tension_amplitude")),
-        ("Most probable max. tension", dynamic, lambda line: line.get("tension_most_probable_max")),
+        ("Largest static tension", static, lambda line: line.get("tension"), True),
+        ("Largest σ of tension", dynamic, _total, False),
+        ("Largest tension amplitude", dynamic, lambda line: line.get("tension_amplitude"), False),
+        ("Most probable max. tension", dynamic, lambda line: line.get("tension_most_probable_max"), True),
     )
-    for label, lines, values in candidates:
-        value, where = _worst(lines, values)
+    for label, lines, values, with_ends in candidates:
+        value, where = _worst(lines, values, with_ends)
         if value is not None:
             made.append(figure_card(label, _kn(value), where))
     used = {name: line["utilisation"] for name, line in (dynamic or static).items() if line.get("utilisation")}
@@ -191,12 +198,12 @@ def lines_table(summary: dict[str, Any]) -> Any:
         return [_peak(values(lines.get(name) or {}))[0] for name in names]
 
     columns = {
-        "static": along(static, lambda line: line.get("tension")),
+        "static": along(static, lambda line: _largest_of(line, line.get("tension"))),
         "σ WF": along(dynamic, lambda line: (line.get("tension_std") or {}).get("wf")),
         "σ LF": along(dynamic, lambda line: (line.get("tension_std") or {}).get("lf")),
         "σ total": along(dynamic, _total),
         "amplitude": along(dynamic, lambda line: line.get("tension_amplitude")),
-        "probable max.": along(dynamic, lambda line: line.get("tension_most_probable_max")),
+        "probable max.": along(dynamic, lambda line: _largest_of(line, line.get("tension_most_probable_max"))),
     }
     columns = {title: values for title, values in columns.items() if any(v is not None for v in values)}
     if not columns:

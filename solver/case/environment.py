@@ -39,8 +39,9 @@ class Seabed(Part):
     """Stiffness of the spring under one node, whatever its spacing. Give this or `soil`."""
     soil: SoilStiffness | None = None
     """Soil stiffness per unit area; a node's spring is soil × diameter × tributary length. Default 100 kN/m3."""
-    transition: PositiveLength = 0.1
-    """Height over which the contact force grows from nothing to its linear law (1/a2)."""
+    transition: PositiveLength | None = None
+    """Height over which the contact force grows from nothing to its linear law (1/a2). Default: the depth to which a node
+    sinks under its own weight, and at least half a diameter."""
     damping: LineDamping = 0.0
     """Damping of vertical motion of one node in full contact."""
     friction: Annotated[float, Field(ge=0, le=2)] = 0.0

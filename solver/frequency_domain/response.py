@@ -11,6 +11,7 @@ from ..kernels.band import LANES
 from ..model.linear import LineGeometry
 from ..outcome import NotConverged
 from .band import Strips
+from .ends import end_forces
 from .transfer import displacements, solve_line, tension_response, velocity_covariance
 from .water import WaterMotion
 
@@ -38,7 +39,8 @@ class Response:
     """Responses of one band. vessel : complex (R, 6, W); covariance : per line (N+1, 6) of relative velocity [m²/s²].
 
     tension : complex (R, N, W) per line and moment : complex (R, 2, N+1, W), in and out of plane, and
-    motion : complex (N+1, 3, W) under the first load, when asked for.
+    motion : complex (N+1, 3, W) under the first load, and ends : complex (R, 4, W) forces on the supports (F19), when
+    asked for.
     """
 
     vessel: Array | None
@@ -46,6 +48,7 @@ class Response:
     tension: list[Array] = field(default_factory=list)
     moment: list[Array] = field(default_factory=list)
     motion: list[Array] = field(default_factory=list)
+    ends: list[Array] = field(default_factory=list)
     condensed: Array | None = None
 
 
@@ -54,13 +57,14 @@ Moment = Callable[[LineGeometry, Array, Array], Array]
 
 def respond(
     geometries: list[LineGeometry], damping: list[Array], couplings: list[Array], own: Array | None, strips: Strips,
-    loads: Loads, moment: Moment | None = None,
+    loads: Loads, moment: Moment | None = None, at_rest: list[Array] | None = None,
 ) -> Response:  # fmt: skip
     """Solve one band.
 
     damping : (N+1, 3, 3) per line; couplings : ∂(end b, end a)/∂(vessel) (6, 6) per line.
     own : complex (W, 6, 6) dynamic stiffness of the vessel without its lines, None without a vessel.
-    moment : given, tension and bending moment are returned too.
+    moment : given, tension and bending moment are returned too; at_rest : then also, forces of the lines on their
+    supports in the static position, (6,) per line.
     """
     R, W = loads.weight.shape
     full = moment is not None
@@ -69,6 +73,7 @@ def respond(
     tensions: list[list[Array]] = [[] for _ in geometries]
     moments: list[list[Array]] = [[] for _ in geometries]
     motions: list[list[Array]] = [[] for _ in geometries]
+    ends_parts: list[list[Array]] = [[] for _ in geometries]
     condensed_parts: list[Array] = []
     for window in _windows(geometries, R, W):
         solved = [
@@ -94,6 +99,11 @@ def respond(
                 tensions[index].append(Tr + 1j * Ti)
                 moments[index].append(moment(g, Yr, Yi))
                 motions[index].append(Yr[0] + 1j * Yi[0])
+                if at_rest is not None:
+                    part = WaterMotion(water.real[..., window], water.imag[..., window])
+                    ends_parts[index].append(
+                        end_forces(g, damping[index], strips.omega[window], Yr + 1j * Yi, part, at_rest[index])
+                    )
     if vessel_parts:
         result.vessel = np.concatenate(vessel_parts, axis=-1)
         result.condensed = np.concatenate(condensed_parts, axis=0)
@@ -101,6 +111,7 @@ def respond(
         result.tension = [np.concatenate(parts, axis=-1) for parts in tensions]
         result.moment = [np.concatenate(parts, axis=-1) for parts in moments]
         result.motion = [np.concatenate(parts, axis=-1) for parts in motions]
+        result.ends = [np.concatenate(parts, axis=-1) for parts in ends_parts if parts]
     _check(result)
     return result
 

@@ -128,7 +128,8 @@ class _Position:
                 continue
             own = self.drive.own(self.model, self.static, band.strips.omega, linear.vessel)
             results.append(respond(
-                self.geometries, linear.damping, self.couplings, own, band.strips, band.loads, moment
+                self.geometries, linear.damping, self.couplings, own, band.strips, band.loads, moment,
+                self.static.state.end_forces,
             ))  # fmt: skip
         assert results[0] is not None
         return results[0], results[1]

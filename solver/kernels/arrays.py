@@ -8,6 +8,9 @@ import numpy as np
 
 Array = np.ndarray
 OK, FAILED, SHARP = 0, 1, 2
+# what is recorded of the ends of a line: size and vertical part of the force on the supports at end b and end a, length on
+# the bed, arc length from end a to the touchdown point
+ENDS = TENSION_B, TENSION_A, VERTICAL_B, VERTICAL_A, GROUNDED, TOUCHDOWN = range(6)
 MEAN, SERIES, EXACT = 0, 1, 2  # how the water's motion at the lines is found
 
 
@@ -18,7 +21,8 @@ class Lines(NamedTuple):
     D: Array  # (P, NODE_ROWS, Q) nodes
     free: Array  # (P, Q) 1 where a node moves by itself, 0 where it is fixed, prescribed or on the vessel
     current: Array  # (P, 3, Q)
-    seabed: Array  # (4,) 1/transition, height, friction coefficient, speed at which friction is 0.7 of it
+    friction: Array  # (2,) friction coefficient of the bed, speed at which friction has 0.7 of its size
+    depth: float  # height of the seabed, negative
     kind: Array  # (Q,) end b: 0 fixed or prescribed, 1 on the vessel
     arm: Array  # (3, Q) fairlead from the CG at the static position
     number: Array  # (Q,) real lines the lane stands for
@@ -64,7 +68,7 @@ class Memory(NamedTuple):
     """Retardation functions on the coarse grid of the memory (docs/theory.md, T6); no columns without memory."""
 
     rows: Array  # (12, 6J) weights of the samples, newest first: force at the newest, then one interval later
-    at_zero: Array  # (6, 6) K(0)
+    newest: Array  # (6, 6) mean of K over one interval between samples, for the part of it that has gone by
     every: int  # steps between samples
 
 
@@ -103,6 +107,7 @@ class Watch(NamedTuple):
     last: Array  # (2, N, Q) tension one and two steps ago
     kink: Array  # (N, Q) largest second difference of tension from step to step
     bed: Array  # (4, P, Q) least, largest and last force of the bed on a node, and its largest change in a step
+    ends: Array  # (2, 4, Q) least and largest of the first four rows of ENDS
     reach: Array  # (Q,) farthest that a node in waves was from its static position
 
 

@@ -13,7 +13,7 @@ from numba import njit
 # rows of the packed element constants, shape (N, ELEMENT_ROWS, Q)
 EL, EA, CDN, CDT, MW, CAN, CAT, W_DRY, B_WET, KB, DIAMETER, ELEMENT_ROWS = range(12)
 # rows of the packed node constants, shape (P, NODE_ROWS, Q)
-MASS, A1, POINT_W, POINT_D, POINT_M, POINT_CA, BED_C, POINT_L, POINT_R, NODE_ROWS = range(10)
+MASS, A1, POINT_W, POINT_D, POINT_M, POINT_CA, BED_C, POINT_L, POINT_R, A2, BED, NODE_ROWS = range(12)
 BAND = 9  # diagonal and eight below it
 FAST = {"contract", "reassoc", "arcp", "nsz"}
 
@@ -94,7 +94,7 @@ def sharp(x, C, t):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
-def outer_forces(x, v, acc, C, D, t, seabed, wet, water, first_wave, current, out):  # type: ignore[no-untyped-def]
+def outer_forces(x, v, acc, C, D, t, friction, wet, water, first_wave, current, out):  # type: ignore[no-untyped-def]
     """Drag, inertia of water and line, seabed and attachments, added to out (P, 3, Q) (L6-L14).
 
     wet : (P, 2, Q) wet shares of the half elements before and after each node.
@@ -127,7 +127,7 @@ def outer_forces(x, v, acc, C, D, t, seabed, wet, water, first_wave, current, ou
                 continue
             _half_element(v, acc, C, t, wet, r, i, j, side, out)
         _attachment(D, x, acc, r, i, out)
-        _bed(D, x, v, seabed, i, out)
+        _bed(D, x, v, friction, i, out)
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
@@ -140,16 +140,22 @@ def bed_force(a1, a2, height):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
-def _bed(D, x, v, seabed, i, out):  # type: ignore[no-untyped-def]
+def clear_of_bed(D, x, i):  # type: ignore[no-untyped-def]
+    """Whether node i is so far above the bed in every lane that its force is less than rounding (L13)."""
+    nearest = 1e300
+    for q in range(x.shape[2]):
+        nearest = min(nearest, D[i, A2, q] * (x[i, 2, q] - D[i, BED, q]))
+    return nearest >= 20.0
+
+
+@njit(cache=True, fastmath=FAST, error_model="numpy")
+def _bed(D, x, v, friction, i, out):  # type: ignore[no-untyped-def]
     """Spring, damping and friction of the bed on a node (L13, L15)."""
-    a2, bed, mu, slow = seabed[0], seabed[1], seabed[2], seabed[3]
-    lowest = 1e300
-    for q in range(x.shape[2]):
-        lowest = min(lowest, x[i, 2, q])
-    if 2.0 * a2 * (lowest - bed) >= 40.0:
+    if clear_of_bed(D, x, i):
         return
+    mu, slow = friction[0], friction[1]
     for q in range(x.shape[2]):
-        force, share = bed_force(D[i, A1, q], a2, x[i, 2, q] - bed)
+        force, share = bed_force(D[i, A1, q], D[i, A2, q], x[i, 2, q] - D[i, BED, q])
         out[i, 2, q] += force - D[i, BED_C, q] * share * v[i, 2, q]
         if mu > 0.0:
             rub = mu * force / math.sqrt(v[i, 0, q] ** 2 + v[i, 1, q] ** 2 + slow * slow)

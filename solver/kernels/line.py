@@ -39,9 +39,12 @@ class LineArrays(NamedTuple):
     point_drag: Array  # (N+1,) ½ρ CdA of an attachment
     point_mw: Array  # (N+1,) displaced mass of an attachment
     point_ca: Array  # (N+1,) its added mass coefficient
-    a1: Array  # (N+1,) seabed stiffness of a node
-    seabed: (
-        Array  # (5,) a2 = 1/transition, height of the bed, damping of a node in full contact, friction and its speed
+    a1: Array  # (N+1,) seabed stiffness of a node, zero at the ends
+    a2: Array  # (N+1,) one over the transition height of a node
+    bed: Array  # (N+1,) height from which a node's depth in the bed is measured
+    depth: float  # height of the seabed, negative
+    contact: (
+        Array  # (3,) damping of a node in full contact, friction coefficient, speed at which it has 0.7 of its size
     )
     current_z: Array  # (C,) heights, rising
     current_v: Array  # (C, 3) current velocity at those heights

@@ -7,9 +7,10 @@ from numba import njit
 
 from .arrays import FAILED, OK, SHARP
 from .lanes import elements, sharp
+from .record import forces_now, watch_ends, write
 from .step import KEPT, OFTEN, RENEWED, advance
 from .vessel import remember
-from .watch import watch_step, write
+from .watch import watch_step
 
 MOST_HALVINGS = 4
 
@@ -19,7 +20,7 @@ def march(setup, state, work, spare, first, count, h, every, out, watch, counts)
     """`count` steps from step number `first`; time 0 ends the build-up.
 
     every : steps between outputs, the first of them that long after time 0. out : vessel (n, S, 6), tension (n, N, Q)
-    float32, ends (n, 2, Q) of this block. counts : (3,) iterations, divided steps, outputs written.
+    float32, ends (n, 6, Q) of this block (rows ENDS). counts : (3,) iterations, divided steps, outputs written.
     Returns (status, step, seed).
     """
     S = work.ds.shape[0]
@@ -43,10 +44,13 @@ def march(setup, state, work, spare, first, count, h, every, out, watch, counts)
             return SHARP, k, 0
         kept = k + 1 - begins
         if kept > 0:
-            watch_step(setup, state, work, watch)
-        if kept > 0 and kept % every == 0:
-            write(setup, state, work, time + h, out, int(counts[2]))
-            counts[2] += 1
+            output = kept % every == 0
+            if watch_step(setup, state, work, watch) or output:
+                forces_now(setup, state, work, time + h)
+                watch_ends(setup, work, watch)
+            if output:
+                write(setup, state, work, out, int(counts[2]))
+                counts[2] += 1
     return OK, first + count, 0
 
 

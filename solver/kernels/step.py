@@ -65,7 +65,7 @@ def residual(lines, work, x, v, a, out):  # type: ignore[no-untyped-def]
     wet_shares(x, lines.C, work.wet)
     inner_forces(x, lines.C, work.t, work.length, out)
     outer_forces(
-        x, v, a, lines.C, lines.D, work.t, lines.seabed, work.wet, work.water, lines.first_wave, lines.current, out
+        x, v, a, lines.C, lines.D, work.t, lines.friction, work.wet, work.water, lines.first_wave, lines.current, out
     )
 
 
@@ -107,7 +107,7 @@ def _renew(lines, body, work, table, tau):  # type: ignore[no-untyped-def]
     """Newton's matrix at the present guess: lines factored down to end b, then the vessel's 6×6 factored (T2)."""
     m, d = table[4] / (tau * tau), table[1] / tau
     tangent(
-        work.xt, work.vt, lines.C, lines.D, work.t, work.length, lines.seabed, work.wet, work.water, lines.first_wave,
+        work.xt, work.vt, lines.C, lines.D, work.t, work.length, lines.friction, work.wet, work.water, lines.first_wave,
         lines.current, m, d, work.A,
     )  # fmt: skip
     P, Q = work.xt.shape[0], work.xt.shape[2]

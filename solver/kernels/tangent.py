@@ -9,6 +9,8 @@ from numba import njit
 
 from .lanes import (
     A1,
+    A2,
+    BED,
     BED_C,
     CAN,
     CAT,
@@ -25,12 +27,13 @@ from .lanes import (
     POINT_M,
     POINT_R,
     bed_force,
+    clear_of_bed,
     wet_point,
 )  # fmt: skip
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
-def tangent(x, v, C, D, t, length, seabed, wet, water, first_wave, current, mass_factor, damping_factor, A):  # type: ignore[no-untyped-def]
+def tangent(x, v, C, D, t, length, friction, wet, water, first_wave, current, mass_factor, damping_factor, A):  # type: ignore[no-untyped-def]
     """Lower band of K + mass_factor M + damping_factor B into A (3P, BAND, Q), overwritten: A[i, i - j] (L2, L5, L9, L11).
 
     Symmetric and positive: the negative stiffness of slack elements and what drag owes to turning are left out.
@@ -74,21 +77,18 @@ def tangent(x, v, C, D, t, length, seabed, wet, water, first_wave, current, mass
             j = i - 1 + side
             if 0 <= j <= P - 2:
                 _half_tangent(C, t, wet, r, i, j, side, mass_factor, damping_factor, block)
-        _bed_tangent(D, x, v, seabed, i, damping_factor, block)
+        _bed_tangent(D, x, v, friction, i, damping_factor, block)
         _add_diagonal(A, 3 * i, block)
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
-def _bed_tangent(D, x, v, seabed, i, damping_factor, block):  # type: ignore[no-untyped-def]
+def _bed_tangent(D, x, v, friction, i, damping_factor, block):  # type: ignore[no-untyped-def]
     """Spring, damping and friction of the bed; friction's change with depth is left out (L14, L16)."""
-    a2, bed, mu, slow = seabed[0], seabed[1], seabed[2], seabed[3]
-    lowest = 1e300
-    for q in range(x.shape[2]):
-        lowest = min(lowest, x[i, 2, q])
-    if 2.0 * a2 * (lowest - bed) >= 40.0:
+    if clear_of_bed(D, x, i):
         return
+    mu, slow = friction[0], friction[1]
     for q in range(x.shape[2]):
-        force, share = bed_force(D[i, A1, q], a2, x[i, 2, q] - bed)
+        force, share = bed_force(D[i, A1, q], D[i, A2, q], x[i, 2, q] - D[i, BED, q])
         block[2, q] += share * (D[i, A1, q] + damping_factor * D[i, BED_C, q])
         if mu > 0.0:
             v0, v1 = v[i, 0, q], v[i, 1, q]

@@ -82,11 +82,7 @@ def vessel_residual(body, sea, memory, state, work, seed, time, since, factor_, 
         if has_memory:
             value -= state.lag[0, seed, p] + since * state.lag[1, seed, p]
             for r in range(6):
-                value -= (
-                    0.5
-                    * since
-                    * (memory.at_zero[p, r] * work.svt[seed, r] + memory.at_zero[p, r] * state.past[seed, r])
-                )
+                value -= 0.5 * since * memory.newest[p, r] * (work.svt[seed, r] + state.past[seed, r])
         out[p] += value
 
 

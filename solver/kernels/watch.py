@@ -1,4 +1,4 @@
-"""What is recorded of a step: outputs, extremes, and signs that it was too long (docs/theory.md, T16, T17)."""
+"""Extremes of every kept step, and signs that it was too long (docs/theory.md, T16, T17)."""
 
 from __future__ import annotations
 
@@ -7,17 +7,19 @@ import math
 from numba import njit
 
 from .arrays import MEAN
-from .lanes import A1, EA, EL, FAST
-from .step import residual
-from .waves import ramp, water_at, water_where
+from .lanes import A1, A2, BED, EA, EL, FAST
 
 LOG2 = math.log(2.0)
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
 def watch_step(setup, state, work, watch):  # type: ignore[no-untyped-def]
-    """Take the end of a kept step into the extremes of tension, its kinks, and the blows of the bed (T16, T17)."""
+    """Take the end of a kept step into the extremes of tension, its kinks, and the blows of the bed (T16, T17).
+
+    Returns whether the tension at an end of some line has a new extreme.
+    """
     C, Q = setup.lines.C, work.length.shape[1]
+    extreme = _new_extreme(setup.lines, work, watch)
     for j in range(work.length.shape[0]):
         for q in range(Q):
             T = C[j, EA, q] * (work.length[j, q] / C[j, EL, q] - 1.0)
@@ -27,12 +29,13 @@ def watch_step(setup, state, work, watch):  # type: ignore[no-untyped-def]
             watch.range[1, j, q] = max(watch.range[1, j, q], T)
             watch.kink[j, q] = kink if kink > watch.kink[j, q] else watch.kink[j, q]  # at first not a number
             watch.last[0, j, q], watch.last[1, j, q] = T, one
-    wide = LOG2 / setup.lines.seabed[0]
+    D = setup.lines.D
     for i in range(state.x.shape[0]):
         for q in range(Q):
             # a hyperbola instead of (L13): the same at and below the bed within a few per cent, without its logarithm
-            height = state.x[i, 2, q] - setup.lines.seabed[1]
-            F = 0.5 * setup.lines.D[i, A1, q] * (math.sqrt(height * height + wide * wide) - height)
+            wide = LOG2 / D[i, A2, q]
+            height = state.x[i, 2, q] - D[i, BED, q]
+            F = 0.5 * D[i, A1, q] * (math.sqrt(height * height + wide * wide) - height)
             change = abs(F - watch.bed[2, i, q])
             watch.bed[0, i, q] = min(watch.bed[0, i, q], F)
             watch.bed[1, i, q] = max(watch.bed[1, i, q], F)
@@ -40,6 +43,20 @@ def watch_step(setup, state, work, watch):  # type: ignore[no-untyped-def]
             watch.bed[3, i, q] = change if change > watch.bed[3, i, q] else watch.bed[3, i, q]
     if setup.sea.kind != MEAN:
         _reach(setup.sea, state, watch)
+    return extreme
+
+
+@njit(cache=True)
+def _new_extreme(lines, work, watch):  # type: ignore[no-untyped-def]
+    """Whether the element at an end of some line is stretched more, or less, than at any kept step before."""
+    N, Q = work.length.shape
+    for q in range(Q):
+        for j in (int(lines.bottom[q]), N - 1):
+            T = lines.C[j, EA, q] * (work.length[j, q] / lines.C[j, EL, q] - 1.0)
+            lowest, highest = watch.range[0, j, q], watch.range[1, j, q]
+            if not lowest <= T <= highest:
+                return True
+    return False
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
@@ -51,27 +68,3 @@ def _reach(sea, state, watch):  # type: ignore[no-untyped-def]
             for p in range(3):
                 gap += (state.x[first + i, p, q] - sea.origin[i, p, q]) ** 2
             watch.reach[q] = max(watch.reach[q], math.sqrt(gap))
-
-
-@njit(cache=True)
-def write(setup, state, work, time, out, row):  # type: ignore[no-untyped-def]
-    """Vessel, element tensions and end reactions at a time into a row of the outputs."""
-    N, Q = work.length.shape
-    lines, (vessel, tension, ends) = setup.lines, out
-    if row >= tension.shape[0]:
-        return
-    vessel[row] = state.s
-    for j in range(N):
-        for q in range(Q):
-            tension[row, j, q] = lines.C[j, EA, q] * (work.length[j, q] / lines.C[j, EL, q] - 1.0)
-    load = ramp(time, setup.build_up)[0]
-    water_at(setup.sea, time, load, work.terms)
-    water_where(setup.sea, work, state.x, time, load)
-    residual(lines, work, state.x, state.v, state.a, work.res)
-    for q in range(Q):
-        for e in range(2):
-            i = N if e == 0 else int(lines.bottom[q])
-            total = 0.0
-            for p in range(3):
-                total += work.res[i, p, q] ** 2
-            ends[row, e, q] = math.sqrt(total)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..case import Case, harmonic_frequencies
-from ..case.lines import End, Line
+from ..case.lines import End, Line, Segment
 from ..kernels.line import LineArrays
 from ..outcome import CaseError, FieldError
 
@@ -55,6 +55,19 @@ class LineModel:
     @property
     def nodes(self) -> int:
         return int(self.arrays.L.size) + 1
+
+    @property
+    def anchor_end(self) -> str:
+        """Which end counts as the anchor: `end_b` where end b alone is anchored, or end a alone is on the vessel."""
+        on_vessel = self.end_a.kind == "fairlead" and self.end_b.kind != "fairlead"
+        return "end_b" if self.anchor_at_b or on_vessel else "end_a"
+
+    @property
+    def segment_elements(self) -> tuple[int, ...]:
+        """Number of elements of each segment, from end a."""
+        known = [None if one.length == "find" else element_count(one, float(one.length)) for one in self.spec.segments]
+        rest = int(self.arrays.L.size) - sum(count or 0 for count in known)
+        return tuple(rest if count is None else count for count in known)
 
     @property
     def node_arc(self) -> Array:
@@ -148,7 +161,7 @@ def discretise(case: Case, name: str, frame: float, found_length: float) -> Line
     for segment in spec.segments:
         kind = case.line_types[segment.type]
         length = found_length if segment.length == "find" else float(segment.length)
-        count = segment.elements or math.ceil(length / float(segment.element_length or length) - 1e-9)
+        count = element_count(segment, length)
         values = (length / count, kind.EA, kind.EI, kind.diameter, kind.mass, kind.drag.normal, kind.drag.tangential,
                   kind.added_mass.normal, kind.added_mass.tangential)  # fmt: skip
         for key, value in zip(columns, values, strict=True):
@@ -156,25 +169,55 @@ def discretise(case: Case, name: str, frame: float, found_length: float) -> Line
     c = {key: np.array(values, dtype=float) for key, values in columns.items()}
     L, D = c["L"], c["D"]
     area = 0.25 * math.pi * D**2
+    rho, g = water.density, water.gravity
     node = _nodes(case, name, L, c["m"], frame)
     kb = np.zeros(L.size + 1)
     flexible = (c["EI"][:-1] > 0) & (c["EI"][1:] > 0)
     with np.errstate(divide="ignore"):
         kb[1:-1] = np.where(flexible, 2.0 / (L[:-1] / c["EI"][:-1] + L[1:] / c["EI"][1:]), 0.0)
-    seabed = case.environment.seabed
-    if seabed.node_stiffness is not None:
-        a1 = np.full(L.size + 1, seabed.node_stiffness)
-    else:
-        a1 = (DEFAULT_SOIL if seabed.soil is None else seabed.soil) * _halves(L * D)
+    bed = _bed_springs(case, _halves(L), _halves(c["m"] * g * L - rho * g * area * L), _halves(L * D))
     z, current = current_profile(case, frame)
-    rho, g = water.density, water.gravity
     return LineArrays(
         L=L, EA=c["EA"], kb=kb, EI=c["EI"], D=D, w_dry=c["m"] * g * L, b_wet=rho * g * area * L,
         cdn=0.25 * rho * L * D * c["cn"], cdt=0.25 * rho * L * D * c["ct"], mw=0.5 * rho * area * L,
-        can=c["can"], cat=c["cat"], **node, a1=a1,
-        seabed=np.array([1.0 / seabed.transition, -case.environment.depth, seabed.damping, seabed.friction,
-                         seabed.friction_speed]), current_z=z, current_v=current,
+        can=c["can"], cat=c["cat"], **node, **bed,
+        current_z=z, current_v=current,
     )  # fmt: skip
+
+
+def element_count(segment: Segment, length: float) -> int:
+    """Number of elements of a segment of a length [m]."""
+    return segment.elements or math.ceil(length / float(segment.element_length or length) - 1e-9)
+
+
+def _bed_springs(case: Case, length: Array, weight: Array, area: Array) -> dict[str, Array | float]:
+    """The springs of the bed under the nodes (L13, L19, L20).
+
+    length, weight, area : of a node's share of the line: unstretched length [m], weight in water [N], length times
+    diameter [m2]. The ends of a line are held by their supports: they have no spring.
+    """
+    seabed, level = case.environment.seabed, -case.environment.depth
+    if seabed.node_stiffness is not None:
+        a1 = np.full(length.size, float(seabed.node_stiffness))
+    else:
+        a1 = (DEFAULT_SOIL if seabed.soil is None else float(seabed.soil)) * area
+    resting = np.maximum(weight, 0.0) / a1
+    if seabed.transition is not None:
+        transition = np.full(length.size, float(seabed.transition))
+    else:
+        transition = np.maximum(resting, 0.5 * area / length)
+    a1[[0, -1]] = 0.0
+    return {
+        "a1": a1, "a2": 1.0 / transition, "bed": level - _lowered(resting, transition), "depth": level,
+        "contact": np.array([seabed.damping, seabed.friction, seabed.friction_speed]),
+    }  # fmt: skip
+
+
+def _lowered(resting: Array, transition: Array) -> Array:
+    """How far a node's spring is lowered so that the node rests where a linear spring would hold it [m] (L19)."""
+    with np.errstate(divide="ignore"):
+        lowered = -0.5 * transition * np.log(-np.expm1(-2.0 * resting / transition))
+    return np.where(resting > 1e-9 * transition, lowered, 0.0)
 
 
 def _halves(values: Array) -> Array:

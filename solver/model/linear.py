@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..forces.inertia import blocks
-from ..forces.seabed import contact
+from ..forces.seabed import damping_blocks
 from ..forces.weight import wet_half
 from ..kernels.line import HALF
 from .line import LineModel
@@ -48,7 +48,7 @@ def line_geometry(line: LineModel, x: Array) -> LineGeometry:
             wet[i, 0] = wet_half(x[i, 2], x[i - 1, 2], arrays.D[i - 1])[0]
         if i < nodes - 1:
             wet[i, 1] = wet_half(x[i, 2], x[i + 1, 2], arrays.D[i])[0]
-    bed = np.array([arrays.seabed[2] * contact(z - arrays.seabed[1], arrays.seabed[0])[1] for z in x[:, 2]])
+    bed = damping_blocks(arrays, x)
     chord = x[-1] - x[0]
     flat = float(np.hypot(chord[0], chord[1]))
     plane = np.array([-chord[1], chord[0], 0.0]) / flat if flat > 1e-9 else np.array([0.0, 1.0, 0.0])

@@ -15,6 +15,8 @@ from ..modes.solve import Mode
 from ..statics.solve import StaticState
 
 Array = np.ndarray
+#: rows of the forces of a line on its supports, as `frequency_domain.ends` gives them
+END_FORCES = ("end_b_tension", "end_a_tension", "end_b_vertical", "end_a_vertical")
 
 
 @dataclass(frozen=True)
@@ -113,6 +115,17 @@ class Solved:
         assert self.frequency is not None
         low = self.frequency.low
         return self.spectrum(self.frequency.wave.tension[index], low.tension[index] if low is not None else None)
+
+    def end_spectra(self, index: int) -> Array:
+        """Spectra of the forces at the ends of a line (rows END_FORCES) over `omega`, (4, W) [N² s/rad]."""
+        assert self.frequency is not None
+        low = self.frequency.low
+        return self.spectrum(self.frequency.wave.ends[index], low.ends[index] if low is not None else None)
+
+    def end_means(self, index: int) -> Array:
+        """Static forces at the ends of a line (rows END_FORCES), (4,) [N]."""
+        end_b, end_a = self.static.state.end_forces[index].reshape(2, 3)
+        return np.array([np.linalg.norm(end_b), np.linalg.norm(end_a), end_b[2], end_a[2]])
 
     def moment_spectra(self, index: int) -> Array:
         """Spectra of bending moment in plane and out of plane, (2, N+1, W) [(N m)² s/rad]."""

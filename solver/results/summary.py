@@ -10,9 +10,9 @@ import numpy as np
 from ..case.quantities import DOF
 from ..forces import axial
 from ..model.build import Model
-from ..model.line import LineModel
 from ..waves.spectra import hs_in_band, significant_height
-from .solved import Solved
+from .line_values import grounded_length, largest, utilisation
+from .solved import END_FORCES, Solved
 from .statistics import combined_maximum, most_probable_maximum, significant
 
 Array = np.ndarray
@@ -76,29 +76,16 @@ def _statics(solved: Solved) -> dict[str, Any]:
             "arc_length": _list(line.element_arc),
             "tension": _list(tension),
             "length": line.length,
-            "grounded_length": _grounded(line, shape),
+            "grounded_length": grounded_length(line, shape),
             "multiplicity": line.multiplicity,
         }
-        loads = [kind for segment in line.spec.segments if (kind := _breaking(solved, segment.type)) is not None]
-        if loads:
-            lines[line.name]["utilisation"] = float(tension.max()) / min(loads)
+        ends = float(np.linalg.norm(end_a)), float(np.linalg.norm(end_b))
+        lines[line.name]["largest"] = largest(line, tension, *ends)
+        lines[line.name].update(utilisation(solved.model.case, line, tension, *ends))
     out: dict[str, Any] = {"converged": True, "iterations": state.iterations, "residual": float(state.residual)}
     if solved.model.vessel is not None:
         out["vessel"] = {"position": _list(solved.static.position), "mean_drift": _list(solved.static.drift)}
     return {**out, "lines": lines}
-
-
-def _grounded(line: LineModel, shape: Array) -> float:
-    """Arc length from the end on the bed to the last node within the transition height of it; 0 with no end there [m]."""
-    touching = shape[:, 2] < line.arrays.seabed[1] + 1.0 / line.arrays.seabed[0]
-    arc = line.node_arc[touching]
-    if touching[0]:
-        return float(arc.max())
-    return line.length - float(arc.min()) if touching[-1] else 0.0
-
-
-def _breaking(solved: Solved, kind: str) -> float | None:
-    return solved.model.case.line_types[kind].breaking_load
 
 
 def _frequency(solved: Solved) -> dict[str, Any]:
@@ -114,6 +101,7 @@ def _frequency(solved: Solved) -> dict[str, Any]:
         line.name: {
             "arc_length": _list(line.element_arc),
             "tension_amplitude": _list(np.abs(result.wave.tension[i][0, :, 0])),
+            **_end_amplitudes(solved, i),
         }
         for i, line in enumerate(solved.lines)
     }
@@ -142,11 +130,43 @@ def _random(solved: Solved) -> dict[str, Any]:
             "tension_std": {band: _list(std[band]) for band in BANDS},
             "tension_significant": {band: _list(significant(std[band])) for band in BANDS},
             "tension_most_probable_max": _list(mean + extreme["combined"]),
+            **_ends(solved, i, duration),
         }
-        loads = [kind for segment in line.spec.segments if (kind := _breaking(solved, segment.type)) is not None]
-        if loads:
-            lines[line.name]["utilisation"] = float(np.max(mean + extreme["combined"])) / min(loads)
+        tops = [lines[line.name][f"{end}_tension"]["most_probable_max"] for end in ("end_a", "end_b")]
+        lines[line.name]["largest"] = largest(line, mean + extreme["combined"], *tops)
+        lines[line.name].update(utilisation(solved.model.case, line, mean + extreme["combined"], *tops))
     return {**out, "lines": lines}
+
+
+def _end_amplitudes(solved: Solved, index: int) -> dict[str, float]:
+    """Amplitudes of the forces at the ends of a line in harmonic motion (F19)."""
+    assert solved.frequency is not None
+    size = dict(zip(END_FORCES, np.abs(solved.frequency.wave.ends[index][0, :, 0]), strict=True))
+    return {
+        "end_a_tension_amplitude": float(size["end_a_tension"]),
+        "end_b_tension_amplitude": float(size["end_b_tension"]),
+        "anchor_vertical_amplitude": float(size[f"{solved.lines[index].anchor_end}_vertical"]),
+    }
+
+
+def _ends(solved: Solved, index: int, duration: float) -> dict[str, Any]:
+    """Mean, σ per band and most probable maximum of the forces at the ends of a line (F19)."""
+    std, extreme = _extremes(solved, solved.end_spectra(index), duration)
+    mean = solved.end_means(index)
+    found = {
+        name: {
+            "mean": float(mean[row]),
+            "std": {band: float(std[band][row]) for band in BANDS},
+            "most_probable_max": float(mean[row] + extreme["combined"][row]),
+        }
+        for row, name in enumerate(END_FORCES)
+    }
+    anchor = solved.lines[index].anchor_end
+    return {
+        "end_a_tension": found["end_a_tension"],
+        "end_b_tension": found["end_b_tension"],
+        "anchor_vertical": found[f"{anchor}_vertical"],
+    }
 
 
 def _extremes(solved: Solved, spectra: Array, duration: float) -> tuple[dict[str, Array], dict[str, Array]]:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..case.quantities import DOF
+from ..kernels.arrays import GROUNDED, TENSION_A, TENSION_B, TOUCHDOWN, VERTICAL_A, VERTICAL_B
 from ..time_domain.block import Timing
 from ..time_domain.ensemble import Record
 from ..time_domain.resolution import worst
@@ -19,13 +20,18 @@ from .part import Part
 Array = np.ndarray
 KEY = "time_domain_part"
 RANGES = 50  # of rainflow counts
+#: what is recorded at the ends of a line, with its row in the record; the anchor's vertical force is at either end
+END_VALUES = {
+    "end_b_tension": TENSION_B, "end_a_tension": TENSION_A, "anchor_vertical": VERTICAL_A, "grounded_length": GROUNDED,
+    "touchdown": TOUCHDOWN,
+}  # fmt: skip
 
 
 def time_part(
     record: Record, timing: Timing, lines: list[dict[str, Any]], border: float, omega: float | None, random: bool,
     periodic: bool,
 ) -> Part:  # fmt: skip
-    """One chunk's seeds as arrays that merge. lines : name, gap (padding elements) and arc_length of each.
+    """One chunk's seeds as arrays that merge. lines : name, gap (padding elements), arc_length, length and anchor of each.
 
     omega : the frequency of regular waves or prescribed motion, None without; random : whether there are random waves.
     periodic : whether the record is a whole number of periods of everything that moves.
@@ -35,6 +41,7 @@ def time_part(
     arrays = {
         "vessel": record.vessel.astype(np.float32), "top": record.tension[:, -1].copy(), "ends": record.ends.astype(np.float32),
         "tension_low": low, "tension_high": high, "tension_mean": mean, "lowest": record.lowest, "highest": record.highest,
+        "ends_range": record.ends_range,
     }  # fmt: skip
     if omega is not None:
         arrays["harmonic"] = first_harmonic(record.tension, step, omega)
@@ -89,11 +96,24 @@ class TimeResult:
         return self.arrays[key][gap:, index]
 
     def history(self, name: str, what: str) -> Array:
-        """`top` (element tension), `end_b` or `end_a` (reaction) of a line over time, (n, seeds)."""
+        """`top` (element tension) or one of END_VALUES of a line over time, (n, seeds)."""
         index, _ = self.line(name)
         if what == "top":
             return self.arrays["top"][:, index]
-        return self.arrays["ends"][:, 0 if what == "end_b" else 1, index]
+        return self.arrays["ends"][:, self.row(name, what), index]
+
+    def row(self, name: str, what: str) -> int:
+        """Row of one of END_VALUES in the recorded values of a line's ends."""
+        if what == "anchor_vertical":
+            index, _ = self.line(name)
+            return VERTICAL_B if self.head["lines"][index]["anchor"] == "end_b" else VERTICAL_A
+        return END_VALUES[what]
+
+    def end_range(self, name: str, what: str) -> tuple[Array, Array]:
+        """Least and largest value at an end over every step, (seeds,) each."""
+        index, _ = self.line(name)
+        lowest, highest = self.arrays["ends_range"][:, self.row(name, what), index]
+        return lowest, highest
 
     def motion(self, dof: str) -> Array:
         """Displacement from the static position over time, (n, seeds) [m or rad]."""
@@ -150,20 +170,53 @@ def _by_dof(values: Array) -> dict[str, float]:
 def _line(result: TimeResult, line: dict[str, Any]) -> dict[str, Any]:
     name = line["name"]
     stats = _tension(result, name)
-    reaction = result.history(name, "end_b")
+    highest = result.elements("highest", name).max(axis=-1)
     out = {
         "arc_length": line["arc_length"],
         "tension_min": result.elements("lowest", name).min(axis=-1).tolist(),
-        "tension_max": result.elements("highest", name).max(axis=-1).tolist(),
+        "tension_max": highest.tolist(),
         "tension_mean": result.elements("tension_mean", name).mean(axis=-1).tolist(),
         "tension_std": {band: stats[band].tolist() for band in ("wf", "lf")},
         "tension_std_error": {band: stats[f"{band}_error"].tolist() for band in ("wf", "lf")},
-        "end_b_tension": {"min": float(reaction.min()), "max": float(reaction.max())},
-        "end_b_max_per_seed": reaction.max(axis=0).astype(float).tolist(),
+        **{what: _end_statistics(result, name, what) for what in ("end_a_tension", "end_b_tension", "anchor_vertical")},
+        "end_b_max_per_seed": result.end_range(name, "end_b_tension")[1].tolist(),
+        **_bed_statistics(result, name),
     }
+    out["largest"] = _largest(line, highest, out)
     if "harmonic" in result.arrays:
         out["tension_first_harmonic"] = result.elements("harmonic", name).mean(axis=-1).tolist()
     return out
+
+
+def _end_statistics(result: TimeResult, name: str, what: str) -> dict[str, float]:
+    """Extremes over every step, mean and standard deviation over all seeds, of a force at an end."""
+    lowest, highest = result.end_range(name, what)
+    history = result.history(name, what).astype(float)
+    return {
+        "min": float(lowest.min()), "max": float(highest.max()), "mean": float(history.mean()), "std": float(history.std()),
+    }  # fmt: skip
+
+
+def _bed_statistics(result: TimeResult, name: str) -> dict[str, dict[str, float]]:
+    """Length on the bed and arc length of the touchdown point; nothing for a line that never touches the bed."""
+    if not np.any(result.history(name, "grounded_length")):
+        return {}
+    out = {}
+    for what in ("grounded_length", "touchdown"):
+        values = result.history(name, what).astype(float)
+        out[what] = {
+            "min": float(values.min()), "max": float(values.max()), "mean": float(values.mean()),
+            "std": float(values.std()),
+        }  # fmt: skip
+    return out
+
+
+def _largest(line: dict[str, Any], highest: Array, out: dict[str, Any]) -> dict[str, float]:
+    """The largest tension of a line over all steps and seeds, its ends included, and where it was."""
+    arc = [0.0, *line["arc_length"], line["length"]]
+    values = [out["end_a_tension"]["max"], *highest.tolist(), out["end_b_tension"]["max"]]
+    place = int(np.argmax(values))
+    return {"tension": float(values[place]), "arc_length": float(arc[place])}
 
 
 def _tension(result: TimeResult, name: str) -> dict[str, Array]:
@@ -197,15 +250,20 @@ def _spectrum(result: TimeResult, history: Array) -> Made:
     return density, (Axis("omega", "rad/s", omega),)
 
 
-def _history(what: str, quantity: str, text: str) -> None:
-    @channel("time", "line", quantity, "N", text)
+def _history(what: str, quantity: str, text: str, unit: str = "N") -> None:
+    @channel("time", "line", quantity, unit, text)
     def _make(result: TimeResult, name: str) -> Made:
+        if unit == "m" and not np.any(result.history(name, "grounded_length")):
+            return None
         return result.history(name, what), _time(result)
 
 
 _history("top", "top_tension", "History of tension of the element at end b")
-_history("end_b", "end_b_tension", "History of the reaction at end b")
-_history("end_a", "end_a_tension", "History of the reaction at end a")
+_history("end_b_tension", "end_b_tension", "History of the reaction at end b")
+_history("end_a_tension", "end_a_tension", "History of the reaction at end a")
+_history("anchor_vertical", "anchor_vertical", "History of the vertical force on the anchor, up positive")
+_history("grounded_length", "grounded_length", "History of the length of line that lies on the bed", "m")
+_history("touchdown", "touchdown", "History of the arc length from end a to the touchdown point", "m")
 
 
 @channel(
@@ -256,7 +314,7 @@ def _rainflow(result: TimeResult, name: str) -> Made:
     """Counts of all seeds in RANGES equal ranges up to the largest (the library `rainflow`, ASTM E1049)."""
     from rainflow import count_cycles
 
-    history = result.history(name, "end_b").astype(float)
+    history = result.history(name, "end_b_tension").astype(float)
     largest = float((history.max(axis=0) - history.min(axis=0)).max())
     if largest <= 0.0:
         return None

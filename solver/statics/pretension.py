@@ -108,7 +108,7 @@ def _catenary_tension(line: LineModel) -> float:
     )
     EA = line.length / float((arrays.L / arrays.EA).sum())
     span, drop = float(np.hypot(*(high - low)[:2])), float(high[2] - low[2])
-    found = solve_catenary(span, drop, line.length, weight, EA, bool(arrays.seabed[1] > low[2] - 1.0))
+    found = solve_catenary(span, drop, line.length, weight, EA, bool(arrays.depth > low[2] - 1.0))
     if found is not None:
         return found.tension
     chord = float(np.hypot(span, drop))

@@ -21,7 +21,7 @@ def first_shape(line: LineModel, a: Array, b: Array) -> Array:
     drop = float(sign * (high[2] - low[2]))
     arc = line.node_arc if low is a else line.length - line.node_arc
     stiffness = line.length / float((arrays.L / arrays.EA).sum())
-    bed = bool(arrays.seabed[1] > low[2] - 1.0) and not flip
+    bed = bool(arrays.depth > low[2] - 1.0) and not flip
     found = None
     if abs(weight) * line.length > 1e-6 * stiffness and span > 1e-3 * line.length:
         found = solve_catenary(span, drop, line.length, abs(weight), stiffness, bed)
@@ -53,4 +53,4 @@ def _sagging_chord(line: LineModel, a: Array, b: Array, sign: float) -> Array:
 
 
 def arrays_bed(line: LineModel) -> float:
-    return float(line.arrays.seabed[1])
+    return float(line.arrays.depth)

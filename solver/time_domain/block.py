@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..case.analysis import TimeDomain
-from ..kernels.arrays import EXACT, FAILED, MEAN, SHARP, Sea, Setup, State, Watch
+from ..kernels.arrays import ENDS, EXACT, FAILED, MEAN, SHARP, Sea, Setup, State, Watch
 from ..kernels.march import march
 from ..model.build import Model
 from ..outcome import CaseError, FieldError, NotConverged
@@ -111,7 +111,7 @@ class Block:
         self.out: tuple[Array, Array, Array] = (
             np.zeros((n, S, 6)),
             np.zeros((n, P - 1, Q), dtype=np.float32),
-            np.zeros((n, 2, Q)),
+            np.zeros((n, len(ENDS), Q)),
         )
         self.watch = make_watch(P, Q)
         self.counts = np.zeros(3, dtype=np.int64)

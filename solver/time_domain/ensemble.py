@@ -30,7 +30,9 @@ class Record:
     """What some seeds did over the kept time.
 
     seeds : numbers; vessel : (n, S, 6) from the static position [m, rad]; tension : (n, N, L, S) float32 of elements,
-    padding included; ends : (n, 2, L, S) reaction at end b and end a [N]; lowest, highest : (N, L, S) over every step;
+    padding included; ends : (n, 6, L, S), rows ENDS: size and vertical part of the force on the supports at end b and end a
+    [N], length on the bed, arc length of the touchdown point [m]; lowest, highest : (N, L, S) over every step;
+    ends_range : (2, 4, L, S) least and largest of the first four rows of `ends` over every step;
     findings : what speaks against the length of the step.
     """
 
@@ -40,6 +42,7 @@ class Record:
     ends: Array
     lowest: Array
     highest: Array
+    ends_range: Array
     iterations: int = 0
     retries: int = 0
     wall_time: float = 0.0
@@ -156,8 +159,9 @@ def _gather(run: Run, blocks: list[Block]) -> Record:
         np.concatenate([block.out[0] for block in blocks], axis=1),
         np.concatenate([seeds_last(block.out[1]) for block in blocks], axis=-1),
         np.concatenate([seeds_last(block.out[2]) for block in blocks], axis=-1),
-        lowest, highest, int(sum(block.counts[0] for block in blocks)), int(sum(block.counts[1] for block in blocks)),
+        lowest, highest, joined("ends"), int(sum(block.counts[0] for block in blocks)),
+        int(sum(block.counts[1] for block in blocks)),
         findings=found,
     )  # fmt: skip
-    turn_back(run.static, run.turned, (record.tension, record.lowest, record.highest), record.ends)
+    turn_back(run.static, run.turned, (record.tension, record.lowest, record.highest), record.ends, record.ends_range)
     return record

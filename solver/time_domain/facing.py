@@ -6,13 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..kernels.arrays import GROUNDED, TENSION_A, TENSION_B, TOUCHDOWN, VERTICAL_A, VERTICAL_B
 from ..kernels.line import LineArrays
 from ..model.line import LineModel
 from ..outcome import CaseError, FieldError
 from ..statics.solve import StaticState
 
 Array = np.ndarray
-WHOLE = ("seabed", "current_z", "current_v")  # of a line, not of its elements or nodes
+SWAPPED = [TENSION_A, TENSION_B, VERTICAL_A, VERTICAL_B]  # rows of the two ends exchanged
+WHOLE = ("depth", "contact", "current_z", "current_v")  # of a line, not of its elements or nodes
 
 
 def facing(static: StaticState) -> tuple[StaticState, tuple[int, ...]]:
@@ -46,14 +48,19 @@ def _turned(line: LineModel) -> LineModel:
     return replace(line, arrays=arrays, end_a=line.end_b, end_b=line.end_a, anchor_at_b=not line.anchor_at_b)
 
 
-def turn_back(static: StaticState, turned: tuple[int, ...], elements: tuple[Array, ...], ends: Array) -> None:
+def turn_back(
+    static: StaticState, turned: tuple[int, ...], elements: tuple[Array, ...], ends: Array, ends_range: Array
+) -> None:
     """Bring what was recorded of turned lines into the order of the case, in place.
 
-    elements : arrays (..., N, L, S), padding first; ends : (n, 2, L, S), end b before end a.
+    elements : arrays (..., N, L, S), padding first; ends : (n, 6, L, S), rows ENDS; ends_range : (2, 4, L, S), the first four.
     """
     most = max(line.nodes for line in static.lines)
     for index in turned:
         real = slice(most - static.lines[index].nodes, None)
         for values in elements:
             values[..., real, index, :] = values[..., real, index, :][..., ::-1, :].copy()
-        ends[:, :, index] = ends[:, ::-1, index].copy()
+        for values in (ends, ends_range):
+            values[:, :4, index] = values[:, SWAPPED, index]
+        touching = ends[:, GROUNDED, index] > 0.0
+        ends[:, TOUCHDOWN, index] = np.where(touching, static.lines[index].length - ends[:, TOUCHDOWN, index], 0.0)

@@ -14,6 +14,7 @@ from ..vessel.rigid import turned
 
 Array = np.ndarray
 MEMORY_STEP = 0.2  # s between samples of the memory
+FAR_BELOW = -1e9  # level of the bed under padding nodes [m]
 
 
 def padded_shapes(static: StaticState) -> list[Array]:
@@ -46,14 +47,16 @@ def _nodes(line: LineModel, gap: int) -> Array:
     out = np.zeros((a.L.size + 1 + gap, row.NODE_ROWS))
     out[:gap, row.MASS] = 1.0
     out[:gap, row.POINT_R] = 1.0
+    out[:gap, row.A2] = 1.0
+    out[:gap, row.BED] = FAR_BELOW
     rest = out[gap:]
     for column, values in (
         (row.MASS, a.node_mass), (row.A1, a.a1), (row.POINT_W, a.point_weight), (row.POINT_D, a.point_drag),
         (row.POINT_M, a.point_mw), (row.POINT_CA, a.point_ca), (row.POINT_L, a.point_lift),
-        (row.POINT_R, a.point_radius),
+        (row.POINT_R, a.point_radius), (row.A2, a.a2), (row.BED, a.bed),
     ):  # fmt: skip
         rest[:, column] = values
-    rest[:, row.BED_C] = a.seabed[2]
+    rest[:, row.BED_C] = np.where(a.a1 > 0.0, a.contact[0], 0.0)
     return out
 
 
@@ -85,7 +88,7 @@ def make_lines(model: Model, static: StaticState, seeds: int, first_wave: int) -
     return Lines(
         C=tile([_elements(line, gap) for line, gap in zip(lines, gaps, strict=True)]),
         D=tile([_nodes(line, gap) for line, gap in zip(lines, gaps, strict=True)]),
-        free=tile(free), current=tile(current), seabed=arrays.seabed[[0, 1, 3, 4]],
+        free=tile(free), current=tile(current), friction=arrays.contact[1:].copy(), depth=float(arrays.depth),
         kind=np.array([line.end_b.kind == "fairlead" for line in lines] * seeds).astype(np.int64), arm=tile(arms),
         number=np.array([float(line.multiplicity) for line in lines] * seeds),
         phasor=tile([np.stack([p.real, p.imag]) for p in phasors]), omega=np.array([harmonic_omega(model.case) or 0.0]),
@@ -123,13 +126,18 @@ def make_memory(model: Model, static: StaticState, step: float) -> Memory:
         return Memory(np.zeros((12, 0)), np.zeros((6, 6)), 1)
     kernel = kernel.turned(float(static.position[5]))
     every = max(round(MEMORY_STEP / step), 1)
-    weights, ahead = _weights(kernel, every * step)
+    weights, ahead, newest = _weights(kernel, every * step)
     rows = np.concatenate([np.moveaxis(part, 0, 1).reshape(6, -1) for part in (weights, ahead)])
-    return Memory(np.ascontiguousarray(rows), np.ascontiguousarray(kernel.at(np.zeros(1))[0]), every)
+    return Memory(np.ascontiguousarray(rows), newest, every)
 
 
-def _weights(kernel: Retardation, dt: float, fine: int = 8) -> tuple[Array, Array]:
-    """∫K(τ) hat_j(τ) dτ for samples at τ = j·dt, and the same from the end of the first interval on, samples one later."""
+def _weights(kernel: Retardation, dt: float, fine: int = 8) -> tuple[Array, Array, Array]:
+    """The weights of (T6) for samples dt apart, from K at `fine` points of each interval.
+
+    Returns ∫K(τ) hat_j(τ) dτ for samples at τ = j·dt, (J, 6, 6); the same from the end of the first interval on, for
+    samples one interval later; and the mean of K over the first interval (6, 6), so that the three are one integral of K
+    for a constant velocity at any time between samples.
+    """
     J = int(np.ceil(kernel.times[-1] / dt)) + 1
     tau = (np.arange(J * fine) + 0.5) * dt / fine
     K = kernel.at(tau).reshape(J, fine, 6, 6) * (dt / fine)
@@ -140,7 +148,7 @@ def _weights(kernel: Retardation, dt: float, fine: int = 8) -> tuple[Array, Arra
     ahead = np.zeros_like(weights)
     ahead[:-1] = falling[1:]
     ahead[1:] += rising[1:]
-    return np.ascontiguousarray(weights), np.ascontiguousarray(ahead)
+    return np.ascontiguousarray(weights), np.ascontiguousarray(ahead), np.ascontiguousarray(K[0].sum(axis=0) / dt)
 
 
 def make_state(static: StaticState, seeds: int, samples: int) -> State:
@@ -158,7 +166,7 @@ def make_watch(nodes: int, lanes: int) -> Watch:
     none = lambda *shape: np.full((*shape, lanes), np.nan)  # noqa: E731
     unseen = lambda n: np.stack([np.full((n, lanes), np.inf), np.full((n, lanes), -np.inf)])  # noqa: E731
     bed = np.concatenate([unseen(nodes), none(1, nodes), np.zeros((1, nodes, lanes))])
-    return Watch(unseen(nodes - 1), none(2, nodes - 1), np.zeros((nodes - 1, lanes)), bed, np.zeros(lanes))
+    return Watch(unseen(nodes - 1), none(2, nodes - 1), np.zeros((nodes - 1, lanes)), bed, unseen(4), np.zeros(lanes))
 
 
 def make_work(state: State, rows: int, first_wave: int) -> Work:

@@ -33,7 +33,8 @@ def _line(turn: float = 0.0) -> LineArrays:
         can=rng.uniform(0.5, 1.5, N), cat=rng.uniform(0.0, 0.5, N), node_mass=rng.uniform(100, 300, N + 1),
         point_weight=900.0 * point, point_lift=600.0 * top,
         point_radius=np.full(N + 1, 3.0), point_drag=800.0 * point, point_mw=100.0 * point, point_ca=0.5 * point,
-        a1=rng.uniform(2e4, 4e4, N + 1), seabed=np.array([2.0, -18.0, 900.0, 0.6, 0.3]),
+        a1=rng.uniform(2e4, 4e4, N + 1), a2=rng.uniform(1.5, 2.5, N + 1), bed=-18.0 - rng.uniform(0.0, 0.2, N + 1),
+        depth=-18.0, contact=np.array([900.0, 0.6, 0.3]),
         current_z=np.array([-30.0, -9.1, 5.0]), current_v=np.ascontiguousarray(velocity),
     )  # fmt: skip
 

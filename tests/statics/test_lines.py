@@ -140,18 +140,6 @@ def test_a_lazy_wave_has_its_hog_and_its_sag() -> None:
     assert np.all(tension > 0)
 
 
-def test_grounded_nodes_lie_at_the_depth_that_carries_their_weight() -> None:
-    _, static = solved(SHAPES["mostly on a hard bed"])
-    x = static.state.shapes[0]
-    w = (50.0 - 1000 * np.pi * 0.1**2 / 4) * G * 5.0
-    sink = w / 1e6  # well below the transition the law is that of a spring, less ln 2 /(2 a2) at zero height
-    from solver.forces.seabed import contact
-
-    flat = x[5:20, 2] + 100.0
-    assert np.ptp(flat) < 1e-6
-    assert contact(float(flat[0]), 20.0)[0] == pytest.approx(sink, rel=1e-6)
-
-
 @pytest.mark.parametrize("turn", [35.0, 200.0])
 @pytest.mark.parametrize("name", ["lazy wave, current", "on the bed, current", "chain, rope, chain", "out of plane"])
 def test_turning_the_case_turns_the_answer(name: str, turn: float) -> None:

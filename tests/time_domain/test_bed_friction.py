@@ -66,7 +66,7 @@ def test_friction_takes_the_work_of_the_end() -> None:
             t = (x[-1] - x[-2]) / np.linalg.norm(x[-1] - x[-2])
             T = arrays.EA[-1] * (np.linalg.norm(x[-1] - x[-2]) / arrays.L[-1] - 1)
             work += T * float(t @ (x[-1] - before[-1]))
-            N = arrays.a1 / (2 * arrays.seabed[0]) * np.logaddexp(0, -2 * arrays.seabed[0] * (x[:, 2] + 50.0))
+            N = arrays.a1 / (2 * arrays.a2) * np.logaddexp(0, -2 * arrays.a2 * (x[:, 2] - arrays.bed))
             rub = mu * N[1:-1] * v[1:-1, 0] ** 2 / np.sqrt(v[1:-1, 0] ** 2 + v[1:-1, 1] ** 2 + SLOW**2)
             rubbed += 4 * h * float(rub.sum())
             before = x

@@ -89,7 +89,7 @@ class Moving:
         A = np.zeros_like(self.work.A)
         lanes.elements(self.x, self.lines.C, self.work.t, self.work.length)
         tangent(
-            self.x, self.v, self.lines.C, self.lines.D, self.work.t, self.work.length, self.lines.seabed, self.work.wet,
+            self.x, self.v, self.lines.C, self.lines.D, self.work.t, self.work.length, self.lines.friction, self.work.wet,
             self.work.water, 0, self.lines.current, mass, damping, A,
         )  # fmt: skip
         return A

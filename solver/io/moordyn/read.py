@@ -190,7 +190,8 @@ def _seabed(options: dict[str, float], environment: dict[str, Any], report: Repo
     if "soil" not in options:
         report.assumed.append(f"seabed stiffness {SOIL:g} Pa/m, MoorDyn's default")
     report.assumed.append(
-        f"the bed's stiffness grows over {seabed.get('transition', '0.1 m')} (seabed.transition); MoorDyn's starts at once"
+        f"the bed's stiffness grows over {seabed.get('transition', 'half a diameter or more')} (seabed.transition); "
+        "MoorDyn's starts at once"
     )
     friction = options.get("friction", 0.0)
     if friction > 0:

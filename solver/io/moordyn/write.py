@@ -252,7 +252,8 @@ def _bed(case: Case, report: Report) -> tuple[float, float]:
             f"{max(areas):.4g} m2"
         )
     soil = seabed.node_stiffness / mean if seabed.node_stiffness is not None else seabed.soil or DEFAULT_SOIL
-    report.dropped.append(f"seabed.transition {seabed.transition:g} m: MoorDyn's bed begins at once")
+    over = "its default" if seabed.transition is None else f"{seabed.transition:g} m"
+    report.dropped.append(f"seabed.transition {over}: MoorDyn's bed begins at once")
     if seabed.friction:
         report.dropped.append(f"seabed.friction_speed {seabed.friction_speed:g} m/s: MoorDyn has FricDamp in its place")
     return soil, seabed.damping / mean

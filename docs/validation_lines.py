@@ -152,14 +152,16 @@ def ours(chain: Chain, heave: float, friction: float) -> dict[str, Range]:
 def deck(chain: Chain) -> str:
     """The chain as an input file of MoorDyn."""
     return "\n".join([
-        "---- LINE TYPES", "TypeName Diam Mass/m EA BA/-zeta EI Cd Ca CdAx CaAx", "(name) (m) (kg/m) (N) (-) (-) (-) (-) (-) (-)",
+        "---- LINE TYPES", "TypeName Diam Mass/m EA BA/-zeta EI Cd Ca CdAx CaAx",
+        "(name) (m) (kg/m) (N) (-) (-) (-) (-) (-) (-)",
         f"chain {DIAMETER} {MASS} {EA} -1.0 0 {CD} 1.0 {CD_AXIAL} 0.0",
         "---- POINTS", "ID Type X Y Z Mass Volume CdA Ca", "(#) (-) (m) (m) (m) (kg) (m3) (m2) (-)",
         f"1 Fixed {chain.anchor} 0 {-chain.depth} 0 0 0 0", "2 Coupled 0 0 0 0 0 0 0",
         "---- LINES", "ID LineType AttachA AttachB UnstrLen NumSegs Outputs", "(#) (-) (-) (-) (m) (-) (-)",
         f"1 chain 1 2 {chain.length} {chain.elements} -",
         "---- OPTIONS", "0 writeLog", "0.001 dtM", f"{SOIL} kBot", f"{BED_DAMPING} cBot", "1025.0 WtrDnsty",
-        f"{chain.depth} WtrDpth", "1.0 dtIC", "200.0 TmaxIC", "4.0 CdScaleIC", "1e-3 threshIC", f"{FRICTION} FrictionCoefficient",
+        f"{chain.depth} WtrDpth", "1.0 dtIC", "200.0 TmaxIC", "4.0 CdScaleIC", "1e-3 threshIC",
+        f"{FRICTION} FrictionCoefficient",
         "---- END",
     ])  # fmt: skip
 

@@ -7,7 +7,8 @@ import math
 from numba import njit
 
 from .arrays import MEAN
-from .lanes import A1, EA, EL, FAST
+from .compression import released
+from .lanes import A1, EA, EL, FAST, KNEE, LIMIT
 from .step import residual
 from .waves import ramp, water_at, water_where
 
@@ -20,7 +21,8 @@ def watch_step(setup, state, work, watch):  # type: ignore[no-untyped-def]
     C, Q = setup.lines.C, work.length.shape[1]
     for j in range(work.length.shape[0]):
         for q in range(Q):
-            T = C[j, EA, q] * (work.length[j, q] / C[j, EL, q] - 1.0)
+            strain = work.length[j, q] / C[j, EL, q] - 1.0
+            T = C[j, EA, q] * (strain + released(strain, C[j, LIMIT, q], C[j, KNEE, q])[0])
             one, two = watch.last[0, j, q], watch.last[1, j, q]
             kink = abs(T - 2.0 * one + two)
             watch.range[0, j, q] = min(watch.range[0, j, q], T)
@@ -63,7 +65,9 @@ def write(setup, state, work, time, out, row):  # type: ignore[no-untyped-def]
     vessel[row] = state.s
     for j in range(N):
         for q in range(Q):
-            tension[row, j, q] = lines.C[j, EA, q] * (work.length[j, q] / lines.C[j, EL, q] - 1.0)
+            strain = work.length[j, q] / lines.C[j, EL, q] - 1.0
+            free, _ = released(strain, lines.C[j, LIMIT, q], lines.C[j, KNEE, q])
+            tension[row, j, q] = lines.C[j, EA, q] * (strain + free)
     load = ramp(time, setup.build_up)[0]
     water_at(setup.sea, time, load, work.terms)
     water_where(setup.sea, work, state.x, time, load)

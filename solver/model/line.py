@@ -9,6 +9,7 @@ import numpy as np
 
 from ..case import Case, harmonic_frequencies
 from ..case.lines import End, Line
+from ..kernels.compression import SHARE
 from ..kernels.line import LineArrays
 from ..outcome import CaseError, FieldError
 
@@ -144,13 +145,14 @@ def discretise(case: Case, name: str, frame: float, found_length: float) -> Line
     found_length : length of the segment marked `find` [m].
     """
     water, spec = case.environment.water, case.lines[name]
-    columns: dict[str, list[float]] = {key: [] for key in ("L", "EA", "EI", "D", "m", "cn", "ct", "can", "cat")}
+    keys = ("L", "EA", "EI", "D", "m", "cn", "ct", "can", "cat", "pushes")
+    columns: dict[str, list[float]] = {key: [] for key in keys}
     for segment in spec.segments:
         kind = case.line_types[segment.type]
         length = found_length if segment.length == "find" else float(segment.length)
         count = segment.elements or math.ceil(length / float(segment.element_length or length) - 1e-9)
         values = (length / count, kind.EA, kind.EI, kind.diameter, kind.mass, kind.drag.normal, kind.drag.tangential,
-                  kind.added_mass.normal, kind.added_mass.tangential)  # fmt: skip
+                  kind.added_mass.normal, kind.added_mass.tangential, kind.compression == "allowed")  # fmt: skip
         for key, value in zip(columns, values, strict=True):
             columns[key].extend([value] * count)
     c = {key: np.array(values, dtype=float) for key, values in columns.items()}
@@ -168,13 +170,28 @@ def discretise(case: Case, name: str, frame: float, found_length: float) -> Line
         a1 = (DEFAULT_SOIL if seabed.soil is None else seabed.soil) * _halves(L * D)
     z, current = current_profile(case, frame)
     rho, g = water.density, water.gravity
+    w_dry, b_wet = c["m"] * g * L, rho * g * area * L
     return LineArrays(
-        L=L, EA=c["EA"], kb=kb, EI=c["EI"], D=D, w_dry=c["m"] * g * L, b_wet=rho * g * area * L,
+        L=L, EA=c["EA"], limit=np.where(c["pushes"] > 0, np.inf, euler_load(c["EI"], L) / c["EA"]),
+        knee=_knee(w_dry / L, b_wet / L, min(case.environment.depth, float(L.sum())), c["EA"]),
+        kb=kb, EI=c["EI"], D=D, w_dry=w_dry, b_wet=b_wet,
         cdn=0.25 * rho * L * D * c["cn"], cdt=0.25 * rho * L * D * c["ct"], mw=0.5 * rho * area * L,
         can=c["can"], cat=c["cat"], **node, a1=a1,
         seabed=np.array([1.0 / seabed.transition, -case.environment.depth, seabed.damping, seabed.friction,
                          seabed.friction_speed]), current_z=z, current_v=current,
     )  # fmt: skip
+
+
+def euler_load(EI: Array, L: Array) -> Array:
+    """Compression at which an element buckles between its two nodes, π²EI/L² [N] (L17)."""
+    load: Array = np.pi**2 * EI / L**2
+    return load
+
+
+def _knee(dry: Array, buoyancy: Array, height: float, EA: Array) -> Array:
+    """Width of the regularisation of compression, as a strain (N,) (L18). dry, buoyancy : per length [N/m]."""
+    weight = np.maximum(np.abs(dry - buoyancy), 0.05 * dry)
+    return np.minimum(0.5 * SHARE * weight * height / EA, 0.01)
 
 
 def _halves(values: Array) -> Array:

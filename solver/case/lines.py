@@ -46,6 +46,9 @@ class LineType(Part):
     """Axial stiffness."""
     EI: BendingStiffness = 0.0
     """Bending stiffness."""
+    compression: Literal["none", "allowed"] = "none"
+    """What an element carries in compression: `none`, at most its Euler load π²EI/l², which is nothing without bending
+    stiffness; `allowed`, any compression, as a spring that pushes."""
     drag: NormalTangential = NormalTangential()
     """Drag coefficients on the diameter (chain: on its nominal diameter, about 2.4)."""
     added_mass: NormalTangential = NormalTangential()

@@ -1,20 +1,22 @@
-"""Axial spring of an element (docs/theory.md, L1-L2)."""
+"""Axial spring of an element (docs/theory.md, L1-L2, L17-L18)."""
 
 from __future__ import annotations
 
 import numpy as np
 from numba import njit
 
+from ..kernels.compression import released
 from ..kernels.line import HALF
 
 
 @njit(cache=True)
 def force(line, x, v, u, a, out):  # type: ignore[no-untyped-def]
-    """Add EA (l - L)/L along each element to its two nodes (L1)."""
+    """Add the axial force along each element to its two nodes (L1, L17)."""
     for j in range(line.L.size):
         d0, d1, d2 = x[j + 1, 0] - x[j, 0], x[j + 1, 1] - x[j, 1], x[j + 1, 2] - x[j, 2]
         length = np.sqrt(d0 * d0 + d1 * d1 + d2 * d2)
-        scale = line.EA[j] * (1.0 / line.L[j] - 1.0 / length)
+        free, _ = released(length / line.L[j] - 1.0, line.limit[j], line.knee[j])
+        scale = line.EA[j] * (1.0 / line.L[j] - 1.0 / length + free / length)
         out[j, 0] += scale * d0
         out[j, 1] += scale * d1
         out[j, 2] += scale * d2
@@ -28,10 +30,11 @@ def _add(line, x, keep_slack, K):  # type: ignore[no-untyped-def]
     for j in range(line.L.size):
         d = x[j + 1] - x[j]
         length = np.sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2])
-        across = line.EA[j] * (1.0 / line.L[j] - 1.0 / length)
+        free, share = released(length / line.L[j] - 1.0, line.limit[j], line.knee[j])
+        across = line.EA[j] * (1.0 / line.L[j] - 1.0 / length + free / length)
         if across < 0.0 and not keep_slack:
             across = 0.0
-        along = line.EA[j] / line.L[j]
+        along = line.EA[j] / line.L[j] * share
         for p in range(3):
             for q in range(3):
                 value = (along - across) * d[p] * d[q] / (length * length)
@@ -46,7 +49,7 @@ def _add(line, x, keep_slack, K):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def tangent(line, x, v, u, K, B):  # type: ignore[no-untyped-def]
-    """Add -∂F/∂x to K, exact (L2)."""
+    """Add -∂F/∂x to K, exact (L2, L18)."""
     _add(line, x, True, K)
 
 
@@ -58,10 +61,11 @@ def tangent_without_slack(line, x, K):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def tension(line, x):  # type: ignore[no-untyped-def]
-    """Axial force of every element, shape (N,) [N] (L1)."""
+    """Axial force of every element, shape (N,) [N] (L1, L17)."""
     out = np.empty(line.L.size)
     for j in range(out.size):
         d = x[j + 1] - x[j]
         length = np.sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2])
-        out[j] = line.EA[j] * (length - line.L[j]) / line.L[j]
+        free, _ = released(length / line.L[j] - 1.0, line.limit[j], line.knee[j])
+        out[j] = line.EA[j] * (length - line.L[j]) / line.L[j] + line.EA[j] * free
     return out

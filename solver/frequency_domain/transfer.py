@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 
 from ..kernels.band import LANES, eliminate_lanes
+from ..kernels.compression import released
 from ..kernels.line import HALF, WIDTH
 
 
@@ -193,12 +194,14 @@ def velocity_covariance(Yr, Yi, ur, ui, omega, weight, out):  # type: ignore[no-
 
 @njit(cache=True)
 def tension_response(line, x, Yr, Yi):  # type: ignore[no-untyped-def]
-    """Tension of every element, EA/L t·(y2 - y1): (R, N, W) real and imaginary part [N per unit response] (F13)."""
+    """Tension of every element, EA/L t·(y2 - y1): (R, N, W) real and imaginary part [N per unit response] (F13, L18)."""
     R, nodes, _, W = Yr.shape
     Tr, Ti = np.zeros((R, nodes - 1, W)), np.zeros((R, nodes - 1, W))
     for j in range(nodes - 1):
         t = x[j + 1] - x[j]
-        t = t * (line.EA[j] / line.L[j] / np.sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]))
+        length = np.sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2])
+        _, share = released(length / line.L[j] - 1.0, line.limit[j], line.knee[j])
+        t = t * (share * line.EA[j] / line.L[j] / length)
         for r in range(R):
             for p in range(3):
                 Tr[r, j] += t[p] * (Yr[r, j + 1, p] - Yr[r, j, p])

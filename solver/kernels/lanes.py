@@ -10,8 +10,10 @@ import math
 import numpy as np
 from numba import njit
 
+from .compression import released
+
 # rows of the packed element constants, shape (N, ELEMENT_ROWS, Q)
-EL, EA, CDN, CDT, MW, CAN, CAT, W_DRY, B_WET, KB, DIAMETER, ELEMENT_ROWS = range(12)
+EL, EA, CDN, CDT, MW, CAN, CAT, W_DRY, B_WET, KB, DIAMETER, LIMIT, KNEE, ELEMENT_ROWS = range(14)
 # rows of the packed node constants, shape (P, NODE_ROWS, Q)
 MASS, A1, POINT_W, POINT_D, POINT_M, POINT_CA, BED_C, POINT_L, POINT_R, A2, BED, NODE_ROWS = range(12)
 BAND = 9  # diagonal and eight below it
@@ -34,12 +36,13 @@ def elements(x, C, t, length):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
 def inner_forces(x, C, t, length, out):  # type: ignore[no-untyped-def]
-    """Axial and bending forces, weight of the dry line and full buoyancy into out (P, 3, Q), which is overwritten (L1, L4)."""
+    """Axial and bending forces, dry weight and full buoyancy into out (P, 3, Q), which is overwritten (L1, L4, L17)."""
     N, Q = length.shape
     out[:] = 0.0
     for j in range(N):
         for q in range(Q):
-            T = C[j, EA, q] * (length[j, q] / C[j, EL, q] - 1.0)
+            strain = length[j, q] / C[j, EL, q] - 1.0
+            T = C[j, EA, q] * (strain + released(strain, C[j, LIMIT, q], C[j, KNEE, q])[0])
             f0, f1, f2 = T * t[j, 0, q], T * t[j, 1, q], T * t[j, 2, q]
             half = 0.5 * (C[j, B_WET, q] - C[j, W_DRY, q])
             out[j, 0, q] += f0

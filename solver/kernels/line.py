@@ -22,6 +22,8 @@ class LineArrays(NamedTuple):
 
     L: Array  # (N,) unstretched element length
     EA: Array  # (N,)
+    limit: Array  # (N,) shortening at which the Euler load is reached, P_E/EA; infinite where compression is allowed
+    knee: Array  # (N,) width ρ of the regularisation beyond it, as a strain
     kb: Array  # (N+1,) rotational stiffness at a node, zero at the ends
     EI: Array  # (N,)
     D: Array  # (N,) diameter

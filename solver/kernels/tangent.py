@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numba import njit
 
+from .compression import released
 from .lanes import (
     A1,
     A2,
@@ -20,6 +21,8 @@ from .lanes import (
     EL,
     FAST,
     KB,
+    KNEE,
+    LIMIT,
     MASS,
     MW,
     POINT_CA,
@@ -34,7 +37,7 @@ from .lanes import (
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
 def tangent(x, v, C, D, t, length, friction, wet, water, first_wave, current, mass_factor, damping_factor, A):  # type: ignore[no-untyped-def]
-    """Lower band of K + mass_factor M + damping_factor B into A (3P, BAND, Q), overwritten: A[i, i - j] (L2, L5, L9, L11).
+    """Lower band of K + mass_factor M + damping_factor B into A (3P, BAND, Q), overwritten: A[i, i - j] (L2, L5, L9, L11, L18).
 
     Symmetric and positive: the negative stiffness of slack elements and what drag owes to turning are left out.
     """
@@ -43,8 +46,10 @@ def tangent(x, v, C, D, t, length, friction, wet, water, first_wave, current, ma
     block, r = np.empty((6, Q)), np.empty((3, Q))
     for j in range(P - 1):
         for q in range(Q):
-            along = C[j, EA, q] / C[j, EL, q]
-            across = max(along - C[j, EA, q] / length[j, q], 0.0)
+            strain = length[j, q] / C[j, EL, q] - 1.0
+            free, share = released(strain, C[j, LIMIT, q], C[j, KNEE, q])
+            along = share * C[j, EA, q] / C[j, EL, q]
+            across = max(C[j, EA, q] * (strain + free) / length[j, q], 0.0)
             rest = along - across
             t0, t1, t2 = t[j, 0, q], t[j, 1, q], t[j, 2, q]
             block[0, q], block[1, q], block[2, q] = (

@@ -7,7 +7,8 @@ import math
 from numba import njit
 
 from .arrays import MEAN
-from .lanes import A1, A2, BED, EA, EL, FAST
+from .compression import released
+from .lanes import A1, A2, BED, EA, EL, FAST, KNEE, LIMIT
 
 LOG2 = math.log(2.0)
 
@@ -22,7 +23,8 @@ def watch_step(setup, state, work, watch):  # type: ignore[no-untyped-def]
     extreme = _new_extreme(setup.lines, work, watch)
     for j in range(work.length.shape[0]):
         for q in range(Q):
-            T = C[j, EA, q] * (work.length[j, q] / C[j, EL, q] - 1.0)
+            strain = work.length[j, q] / C[j, EL, q] - 1.0
+            T = C[j, EA, q] * (strain + released(strain, C[j, LIMIT, q], C[j, KNEE, q])[0])
             one, two = watch.last[0, j, q], watch.last[1, j, q]
             kink = abs(T - 2.0 * one + two)
             watch.range[0, j, q] = min(watch.range[0, j, q], T)
@@ -52,7 +54,8 @@ def _new_extreme(lines, work, watch):  # type: ignore[no-untyped-def]
     N, Q = work.length.shape
     for q in range(Q):
         for j in (int(lines.bottom[q]), N - 1):
-            T = lines.C[j, EA, q] * (work.length[j, q] / lines.C[j, EL, q] - 1.0)
+            strain = work.length[j, q] / lines.C[j, EL, q] - 1.0
+            T = lines.C[j, EA, q] * (strain + released(strain, lines.C[j, LIMIT, q], lines.C[j, KNEE, q])[0])
             lowest, highest = watch.range[0, j, q], watch.range[1, j, q]
             if not lowest <= T <= highest:
                 return True

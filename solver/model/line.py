@@ -9,6 +9,7 @@ import numpy as np
 
 from ..case import Case, harmonic_frequencies
 from ..case.lines import End, Line, Segment
+from ..kernels.compression import SHARE
 from ..kernels.line import LineArrays
 from ..outcome import CaseError, FieldError
 
@@ -157,13 +158,14 @@ def discretise(case: Case, name: str, frame: float, found_length: float) -> Line
     found_length : length of the segment marked `find` [m].
     """
     water, spec = case.environment.water, case.lines[name]
-    columns: dict[str, list[float]] = {key: [] for key in ("L", "EA", "EI", "D", "m", "cn", "ct", "can", "cat")}
+    keys = ("L", "EA", "EI", "D", "m", "cn", "ct", "can", "cat", "pushes")
+    columns: dict[str, list[float]] = {key: [] for key in keys}
     for segment in spec.segments:
         kind = case.line_types[segment.type]
         length = found_length if segment.length == "find" else float(segment.length)
         count = element_count(segment, length)
         values = (length / count, kind.EA, kind.EI, kind.diameter, kind.mass, kind.drag.normal, kind.drag.tangential,
-                  kind.added_mass.normal, kind.added_mass.tangential)  # fmt: skip
+                  kind.added_mass.normal, kind.added_mass.tangential, kind.compression == "allowed")  # fmt: skip
         for key, value in zip(columns, values, strict=True):
             columns[key].extend([value] * count)
     c = {key: np.array(values, dtype=float) for key, values in columns.items()}
@@ -175,10 +177,13 @@ def discretise(case: Case, name: str, frame: float, found_length: float) -> Line
     flexible = (c["EI"][:-1] > 0) & (c["EI"][1:] > 0)
     with np.errstate(divide="ignore"):
         kb[1:-1] = np.where(flexible, 2.0 / (L[:-1] / c["EI"][:-1] + L[1:] / c["EI"][1:]), 0.0)
-    bed = _bed_springs(case, _halves(L), _halves(c["m"] * g * L - rho * g * area * L), _halves(L * D))
+    w_dry, b_wet = c["m"] * g * L, rho * g * area * L
+    bed = _bed_springs(case, _halves(L), _halves(w_dry - b_wet), _halves(L * D))
     z, current = current_profile(case, frame)
     return LineArrays(
-        L=L, EA=c["EA"], kb=kb, EI=c["EI"], D=D, w_dry=c["m"] * g * L, b_wet=rho * g * area * L,
+        L=L, EA=c["EA"], limit=np.where(c["pushes"] > 0, np.inf, euler_load(c["EI"], L) / c["EA"]),
+        knee=_knee(w_dry / L, b_wet / L, min(case.environment.depth, float(L.sum())), c["EA"]),
+        kb=kb, EI=c["EI"], D=D, w_dry=w_dry, b_wet=b_wet,
         cdn=0.25 * rho * L * D * c["cn"], cdt=0.25 * rho * L * D * c["ct"], mw=0.5 * rho * area * L,
         can=c["can"], cat=c["cat"], **node, **bed,
         current_z=z, current_v=current,
@@ -218,6 +223,18 @@ def _lowered(resting: Array, transition: Array) -> Array:
     with np.errstate(divide="ignore"):
         lowered = -0.5 * transition * np.log(-np.expm1(-2.0 * resting / transition))
     return np.where(resting > 1e-9 * transition, lowered, 0.0)
+
+
+def euler_load(EI: Array, L: Array) -> Array:
+    """Compression at which an element buckles between its two nodes, π²EI/L² [N] (L17)."""
+    load: Array = np.pi**2 * EI / L**2
+    return load
+
+
+def _knee(dry: Array, buoyancy: Array, height: float, EA: Array) -> Array:
+    """Width of the regularisation of compression, as a strain (N,) (L18). dry, buoyancy : per length [N/m]."""
+    weight = np.maximum(np.abs(dry - buoyancy), 0.05 * dry)
+    return np.minimum(0.5 * SHARE * weight * height / EA, 0.01)
 
 
 def _halves(values: Array) -> Array:

@@ -31,12 +31,13 @@ def padded_shapes(static: StaticState) -> list[Array]:
 def _elements(line: LineModel, gap: int) -> Array:
     a = line.arrays
     out = np.zeros((a.L.size + gap, row.ELEMENT_ROWS))
-    out[:gap, row.EL] = 1.0
+    out[:gap, row.EL] = out[:gap, row.KNEE] = 1.0
+    out[:gap, row.LIMIT] = np.inf
     rest = out[gap:]
     for column, values in (
         (row.EL, a.L), (row.EA, a.EA), (row.CDN, a.cdn), (row.CDT, a.cdt), (row.MW, a.mw), (row.CAN, a.can),
         (row.CAT, a.cat), (row.W_DRY, a.w_dry), (row.B_WET, a.b_wet), (row.KB, a.kb[:-1]),
-        (row.DIAMETER, a.D),
+        (row.DIAMETER, a.D), (row.LIMIT, a.limit), (row.KNEE, a.knee),
     ):  # fmt: skip
         rest[:, column] = values
     return out

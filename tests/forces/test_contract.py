@@ -28,7 +28,9 @@ def _line(turn: float = 0.0) -> LineArrays:
         [[c, s, 0], [-s, c, 0], [0, 0, 1]]
     )
     return LineArrays(
-        L=L, EA=rng.uniform(1e6, 1e7, N), kb=kb, EI=EI, D=rng.uniform(0.1, 0.4, N), w_dry=rng.uniform(1e3, 2e3, N),
+        L=L, EA=rng.uniform(1e6, 1e7, N), limit=np.array([0.0, 0.0, 0.1, 1e-3, 0.0, np.inf, 0.3]),
+        knee=np.array([1e-2, 0.1, 1e-2, 1e-3, 0.3, 1e-2, 0.2]),
+        kb=kb, EI=EI, D=rng.uniform(0.1, 0.4, N), w_dry=rng.uniform(1e3, 2e3, N),
         b_wet=rng.uniform(1e2, 9e2, N), cdn=rng.uniform(50, 200, N), cdt=rng.uniform(5, 20, N), mw=rng.uniform(20, 90, N),
         can=rng.uniform(0.5, 1.5, N), cat=rng.uniform(0.0, 0.5, N), node_mass=rng.uniform(100, 300, N + 1),
         point_weight=900.0 * point, point_lift=600.0 * top,

@@ -204,7 +204,8 @@ def _text(
         linear_gap=100 * (surge[0] / surge[1] - 1), linear_error=100 * error(linear, "lf", "surge") / surge[1],
         lf_gap=100 * (value(summary, "frequency_domain", "lf", "surge") / value(summary, "time_domain", "lf", "surge") - 1),
         head_gap=gap(summary), linear_head=gap(linear), thin_head=gap(thin), small_head=gap(small), scatter=100 * scatter,
-        slow_heave=-100 * slow,
+        slow_heave=-100 * slow, heave_first=frequency["origin_std"]["first_order"]["heave"],
+        heave_second=frequency["origin_std"]["second_order"]["heave"], heave_low=frequency["vessel_std"]["lf"]["heave"],
     )  # fmt: skip
 
 

@@ -35,7 +35,10 @@ JONSWAP Hs 10.7 m, Tp 14.2 s, γ 2.75, full difference-frequency QTF, mean drift
 {offset:.2f} m. Time domain: {seeds} seeds of an hour after 20 min of build-up, step {step:g} s, {retried} steps
 retried; halving the step changes no σ of seed 1 by more than {halving:.2g} %. Frequency domain: {iterations}
 iterations, {fd_wall:.1f} s; the time domain took {wall:.0f} s beside other work. The bands part at 0.25 rad/s, so
-that resonance in pitch (0.227 rad/s) is low-frequency.
+that resonance in pitch (0.227 rad/s) is low-frequency. Second-order loads do not end there: difference frequencies go
+as far as the QTF and the waves, 1.35 rad/s, so that resonance in heave (0.305 rad/s), above the border and inside the
+wave band, answers to them too. By origin, heave has σ = {heave_first:.3f} m in response to the waves and
+{heave_second:.3f} m to the slow drift force; all heave below the border has σ = {heave_low:.3f} m.
 
 {sigmas}
 

@@ -21,7 +21,7 @@ from .results.solved import ModesResult
 from .statics.newton import vessel_coupling
 from .statics.solve import StaticState
 from .time_domain.block import timing
-from .time_domain.sea import VesselLoads, components
+from .time_domain.sea import VesselLoads, components, low_border
 
 Array = np.ndarray
 
@@ -124,5 +124,7 @@ def seeds_in_linear_system(
         for seed in range(spec.first_seed, spec.first_seed + spec.seeds)
     ]
     differences = np.array([loads.difference(one)[1:] for one in amplitudes])
-    found = same_waves(model, frequency, SeedWaves(waves.omega, waves.step, np.array(amplitudes), differences))
+    found = same_waves(
+        model, frequency, SeedWaves(waves.omega, waves.step, np.array(amplitudes), differences, low_border(model))
+    )
     return {band: dict(zip(DOF, (float(value) for value in found[band]), strict=True)) for band in ("wf", "lf")}

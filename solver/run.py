@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from .analyses import linear_analysis, modes_analysis, natural_modes, seeds_in_linear_system
@@ -12,6 +13,7 @@ from .case.analysis import Analyses
 from .check import check
 from .model.build import Model, build
 from .model.line import harmonic_omega
+from .modes.vessel import unreached_modes
 from .outcome import CaseError, FieldError, NotConverged
 from .plan import plan
 from .results.channels import make_channels, make_time_channels
@@ -102,6 +104,8 @@ def run_chunk(
             "failures": dict.fromkeys(asked, f"{failure}"), "compile_time": compile_time,
         }  # fmt: skip
         return Part(summary)
+    if model.case.environment.random and {"frequency_domain", "time_domain"} & set(asked):
+        static = replace(static, warnings=(*static.warnings, *unreached_modes(model, static)))
     if chunk.kind == "time":
         return _time_chunk(model, static, chunk, checkpoint, tell, threads, compile_time)
     failures: dict[str, str] = {}

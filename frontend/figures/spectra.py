@@ -26,9 +26,9 @@ class Band:
 
 
 def border(case: dict[str, Any] | None, omega: np.ndarray) -> float:
-    """Where the wave band begins: as the case says, else where the strips get wider, else 0.2 rad/s."""
+    """Border of the bands: as the case says, else where the strips get wider, else 0.2 rad/s."""
     analysis = ((case or {}).get("analyses") or {}).get("frequency_domain") or {}
-    for band, key in (("wave", "from"), ("wave", "from_"), ("wave", "start"), ("low", "to")):
+    for band, key in (("low", "to"), ("wave", "from"), ("wave", "from_"), ("wave", "start")):
         value = (analysis.get(band) or {}).get(key) if isinstance(analysis.get(band), dict) else None
         if isinstance(value, int | float) and value > 0:
             return float(value)

@@ -22,9 +22,9 @@ class WaveBand(Part):
     """Equal strips of the wave-frequency response between `from` and `to`, each with its component at its middle."""
 
     from_: Frequency = Field(0.2, alias="from")
-    """Lower border; the low-frequency band lies below it."""
+    """Lower end of the band; first-order loads below it are left out."""
     to: Frequency = 1.2
-    """Upper border."""
+    """Upper end of the band."""
     step: Frequency = 0.005
     """Width of a strip, adjusted so that a whole number fills the band."""
 
@@ -38,10 +38,11 @@ class WaveBand(Part):
 
 
 class LowBand(Part):
-    """Frequency strips of the slow-drift response, at step, 2·step, … up to `to`."""
+    """Narrow frequency strips of the slow-drift response, at step, 2·step, … up to `to`."""
 
     to: Frequency = 0.2
-    """Upper border, at most `wave.from`."""
+    """Border of the bands: results `lf` are of frequencies up to it, results `wf` of those above. It may lie inside the
+    wave band. Slow drift of Newman's approximation ends here."""
     step: Frequency = 0.00125
     """Spacing and lowest frequency."""
 
@@ -54,11 +55,23 @@ class LowBand(Part):
         return self
 
 
+class Difference(Part):
+    """Second-order response above the border `low.to`, in strips at their middles. Only with `drift: qtf`."""
+
+    to: Frequency | None = None
+    """Highest difference frequency of the second-order loads, in both domains. Default: the largest that the wave band
+    and the QTF have."""
+    step: Frequency = 0.005
+    """Width of a strip, adjusted so that a whole number fits between `low.to` and `to`."""
+
+
 class FrequencyDomain(Part):
     wave: WaveBand = Field(default_factory=WaveBand)
-    """Wave-frequency band."""
+    """Wave-frequency band: the first-order response."""
     low: LowBand = Field(default_factory=LowBand)
-    """Low-frequency band."""
+    """Low-frequency band: the second-order response up to the border."""
+    difference: Difference = Field(default_factory=Difference)
+    """Second-order response above the border; the bands of first and second order may overlap."""
     linearisation: Literal["component", "vector"] = "component"
     """Drag linearised in each of two normal directions (Low & Langley), or frame-invariantly as a vector."""
     include_low_velocities: bool = True
@@ -71,11 +84,16 @@ class FrequencyDomain(Part):
     """Duration for most probable maxima."""
 
     @model_validator(mode="after")
-    def _bands_apart(self) -> FrequencyDomain:
-        if self.low.to > self.wave.from_ * (1 + 1e-9):
+    def _differences(self) -> FrequencyDomain:
+        to, step = self.difference.to, self.difference.step
+        if to is not None and to < self.low.to * (1 - 1e-9):
             raise ValueError(
-                f"low.to {self.low.to:g} rad/s lies above wave.from {self.wave.from_:g} rad/s; the bands must not overlap"
+                f"difference.to {to:g} rad/s lies below low.to {self.low.to:g} rad/s; allowed: ≥ {self.low.to:g}, or "
+                f"lower low.to"
             )
+        highest = self.wave.to - self.wave.from_
+        if (highest if to is None else min(to, highest)) / step > 20_000:
+            raise ValueError(f"difference.step {step:g} rad/s gives more than 20 000 strips; use a wider step")
         return self
 
 

@@ -15,7 +15,7 @@ from ..model.linear import LineGeometry
 from ..statics.solve import StaticState
 from ..waves.kinematics import velocity
 from ..waves.spectra import spectrum
-from .band import Strips, low_strips, single, wave_strips
+from .band import Strips, difference_strips, single, wave_strips
 from .response import Loads
 from .water import WaterMotion, water_motion
 
@@ -33,7 +33,11 @@ class Band:
 
 @dataclass(frozen=True)
 class Driver:
-    """Loads of both bands about one static position. typical_speed : of the water at the surface, for a start [m/s]."""
+    """Loads of both bands about one static position.
+
+    wave : first order; low : second order, at difference frequencies, which may reach into the wave band.
+    typical_speed : of the water at the surface, for a start [m/s].
+    """
 
     is_random: bool
     wave: Band
@@ -84,14 +88,14 @@ def driver(model: Model, static: StaticState, spec: FrequencyDomain) -> Driver:
     omega = harmonic_omega(model.case)
     if omega is not None:
         return _harmonic(model, static, omega)
-    strips = wave_strips(spec.wave)
+    strips = wave_strips(spec.wave, float(spec.low.to))
     spectra = np.stack([spectrum(strips.omega, sea) for sea in model.case.environment.random])
-    weight = strips.pad(spectra[:, : strips.count] * strips.width)
+    weight = strips.pad(spectra[:, : strips.count] * strips.widths)
     nothing: list[Any] = [None] * len(static.lines)
     wave = Band(strips, Loads(None, [], nothing, weight), spectra)
     low = None
     if model.vessel is not None and model.vessel.has_drift:
-        low_set = low_strips(spec.low)
+        low_set = difference_strips(spec.low, model.vessel.difference_to, float(spec.difference.step))
         low = Band(low_set, Loads(None, [], nothing, np.zeros((0, low_set.omega.size))), spectra)
     speed = float(np.sqrt(np.sum(weight * strips.omega**2)))
     return Driver(True, wave, low, speed)
@@ -155,5 +159,5 @@ def _drift(model: Model, low: Band, yaw: float) -> Band:
     strips = low.strips
     factor = model.vessel.drift_factor(strips.omega, model.wave_systems, yaw)  # (W, 6, r)
     forces = np.ascontiguousarray(factor.transpose(2, 1, 0)).astype(complex)
-    weight = strips.pad(np.full((forces.shape[0], strips.count), strips.width))
+    weight = strips.pad(np.tile(strips.widths, (forces.shape[0], 1)))
     return replace(low, loads=replace(low.loads, vessel=forces, weight=weight))

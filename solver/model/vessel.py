@@ -15,7 +15,7 @@ from ..case.environment import RegularWave
 from ..vessel.data import HydrodynamicData
 from ..vessel.drift import Drift, drift_spectrum, mean_drift_force, mean_drift_regular, psd_factor
 from ..vessel.excitation import excitation
-from ..vessel.fit import lowest_wave
+from ..vessel.fit import difference_to, lowest_wave
 from ..vessel.quality import quality_warnings
 from ..vessel.radiation import Radiation, make_radiation
 from ..vessel.rigid import (
@@ -42,6 +42,7 @@ class VesselModel:
 
     mass, damping : (6, 6); quadratic : (6,) force per velocity squared; extra_inertia, extra_damping : of lines that
     are not modelled (6, 6); steady_load, buoyancy_minus_weight : (6,) in the frame.
+    band : of the wave components; difference_to : highest difference frequency of slow drift [rad/s].
     """
 
     body: VesselBody
@@ -57,6 +58,7 @@ class VesselModel:
     data: HydrodynamicData | None
     drift: Literal["none", "newman", "newman-geometric", "qtf"]
     band: tuple[float, float]
+    difference_to: float
 
     @property
     def has_drift(self) -> bool:
@@ -137,7 +139,7 @@ def build_vessel(case: Case, data: HydrodynamicData | None) -> tuple[VesselModel
     model = VesselModel(
         body, mass_matrix(vessel), linear_damping(vessel), np.array(vessel.damping.quadratic.values()),
         _six(extra.inertia), _six(extra.damping), steady, afloat, balanced, radiation, about, drift,
-        (float(frequency.wave.from_), float(frequency.wave.to)),
+        (float(frequency.wave.from_), float(frequency.wave.to)), difference_to(case, data),
     )  # fmt: skip
     warnings = radiation.warnings
     if data is not None:

@@ -11,7 +11,7 @@ import numpy as np
 from ..case.quantities import DOF
 from ..forces import axial, bending
 from .channel import Axis, Channel
-from .solved import Solved
+from .solved import Solved, Spectra
 
 Array = np.ndarray
 Made = tuple[Array, tuple[Axis, ...]] | None
@@ -118,14 +118,38 @@ def _elevation(solved: Solved, _: str) -> Made:
     if solved.frequency is None or not solved.is_random:
         return None
     S = solved.frequency.driver.wave.spectra[:, : solved.omega_wave.size].sum(axis=0)
-    return np.concatenate([np.zeros(solved.border), S]), (_omega(solved),)
+    return solved.total(Spectra(S, np.zeros(solved.omega_low.size))), (_omega(solved),)
 
 
 @channel("frequency", "vessel", "{dof}", "[x]2 s/rad", "Spectrum of {which} about the static position")
 def _motion(solved: Solved, dof: str) -> Made:
     if solved.vessel_spectra is None:
         return None
-    return solved.vessel_spectra[DOF.index(dof)], (_omega(solved),)
+    return solved.total(solved.vessel_spectra[DOF.index(dof)]), (_omega(solved),)
+
+
+def _of_origin(solved: Solved, spectra: Spectra | None, origin: str) -> Made:
+    """The first- or the second-order part of a spectrum on its own frequencies; None without slow drift."""
+    if spectra is None or not solved.has_slow_drift:
+        return None
+    if origin == "first_order":
+        return spectra.first, (_omega_wave(solved),)
+    return spectra.second, (Axis("omega", "rad/s", solved.omega_low),)
+
+
+def _by_origin(origin: str, words: str) -> None:
+    @channel("frequency", "vessel", f"{{dof}}_{origin}", "[x]2 s/rad", f"Spectrum of {{which}}, {words}")
+    def _vessel(solved: Solved, dof: str) -> Made:
+        spectra = solved.vessel_spectra
+        return None if spectra is None else _of_origin(solved, spectra[DOF.index(dof)], origin)
+
+    @channel("frequency", "line", f"top_tension_{origin}", "N2 s/rad", f"Spectrum of tension at end b, {words}")
+    def _line(solved: Solved, name: str) -> Made:
+        return _of_origin(solved, solved.tension_spectra(solved.index(name))[-1], origin) if solved.is_random else None
+
+
+_by_origin("first_order", "first-order response to the waves")
+_by_origin("second_order", "response to the slow drift force")
 
 
 def _rao(solved: Solved, dof: str) -> Array | None:
@@ -158,14 +182,14 @@ def _harmonic_motion(solved: Solved, dof: str) -> Made:
 def _tension_spectrum(solved: Solved, name: str) -> Made:
     if not solved.is_random:
         return None
-    return solved.tension_spectra(solved.index(name)).T, (_omega(solved), _elements(solved, name))
+    return solved.total(solved.tension_spectra(solved.index(name))).T, (_omega(solved), _elements(solved, name))
 
 
 @channel("frequency", "line", "top_tension", "N2 s/rad", "Spectrum of tension of the element at end b")
 def _top_tension(solved: Solved, name: str) -> Made:
     if not solved.is_random:
         return None
-    return solved.tension_spectra(solved.index(name))[-1], (_omega(solved),)
+    return solved.total(solved.tension_spectra(solved.index(name))[-1]), (_omega(solved),)
 
 
 def _tension_std(band: str, quantity: str, text: str) -> None:

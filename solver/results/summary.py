@@ -12,7 +12,7 @@ from ..forces import axial
 from ..model.build import Model
 from ..waves.spectra import hs_in_band, significant_height
 from .line_values import grounded_length, largest, utilisation
-from .solved import END_FORCES, Solved
+from .solved import END_FORCES, ORIGINS, Solved, Spectra
 from .statistics import combined_maximum, most_probable_maximum, significant
 
 Array = np.ndarray
@@ -118,16 +118,19 @@ def _random(solved: Solved) -> dict[str, Any]:
     if spectra is not None:
         std, extreme = _extremes(solved, spectra, duration)
         out["vessel_std"] = {band: _by_dof(std[band]) for band in BANDS}
+        out["origin_std"] = {origin: _by_dof(np.sqrt(solved.variance(spectra, origin))) for origin in ORIGINS}
         out["vessel_significant"] = {band: _by_dof(significant(std[band])) for band in BANDS}
         out["vessel_most_probable_max"] = {band: _by_dof(extreme[band]) for band in (*BANDS, "combined")}
     lines: dict[str, Any] = {}
     for i, line in enumerate(solved.lines):
-        std, extreme = _extremes(solved, solved.tension_spectra(i), duration)
+        tension = solved.tension_spectra(i)
+        std, extreme = _extremes(solved, tension, duration)
         mean = axial.tension(line.arrays, solved.static.state.shapes[i])
         lines[line.name] = {
             "arc_length": _list(line.element_arc),
             "tension_mean": _list(mean),
             "tension_std": {band: _list(std[band]) for band in BANDS},
+            "tension_origin_std": {origin: _list(np.sqrt(solved.variance(tension, origin))) for origin in ORIGINS},
             "tension_significant": {band: _list(significant(std[band])) for band in BANDS},
             "tension_most_probable_max": _list(mean + extreme["combined"]),
             **_ends(solved, i, duration),
@@ -169,8 +172,8 @@ def _ends(solved: Solved, index: int, duration: float) -> dict[str, Any]:
     }
 
 
-def _extremes(solved: Solved, spectra: Array, duration: float) -> tuple[dict[str, Array], dict[str, Array]]:
-    """σ per band, and most probable maxima per band and combined, of spectra (…, W)."""
+def _extremes(solved: Solved, spectra: Spectra, duration: float) -> tuple[dict[str, Array], dict[str, Array]]:
+    """σ per band, and most probable maxima per band and combined."""
     std = {band: np.sqrt(solved.moments(spectra, band)) for band in BANDS}
     top = {band: most_probable_maximum(std[band], solved.moments(spectra, band, 2), duration) for band in BANDS}
     top["combined"] = combined_maximum(std["wf"], top["wf"], std["lf"], top["lf"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,7 @@ from ..case.environment import RegularWave
 from ..model.build import Model
 from ..model.line import harmonic_omega
 from ..outcome import CaseError, FieldError
-from ..vessel.drift import Drift, collect, difference_table
+from ..vessel.drift import Drift, difference_sum
 from ..waves.spectra import spectrum
 
 Array = np.ndarray
@@ -142,8 +143,8 @@ def whole_period(spec: TimeDomain, kept: float) -> bool:
 
 
 def low_border(model: Model) -> float:
-    """Frequency that parts low from wave frequencies [rad/s]."""
-    return float((model.case.analyses.frequency_domain or FrequencyDomain()).wave.from_)
+    """Frequency that parts low from wave frequencies, `low.to` [rad/s]."""
+    return float((model.case.analyses.frequency_domain or FrequencyDomain()).low.to)
 
 
 class VesselLoads:
@@ -155,17 +156,17 @@ class VesselLoads:
         self.count = max(round(waves.period / step), 8)
         self.step = waves.period / self.count
         self.first_order = [model.vessel.excitation(waves.omega, heading, yaw) for heading in waves.directions]
-        self.tables: dict[tuple[int, int], Array] = {}
+        self.sums: dict[tuple[int, int], Callable[[Array, Array], Array]] = {}
         if model.vessel.has_drift and not waves.regular:
-            t2 = Drift(model.vessel.data, model.vessel.drift, yaw)
-            last = int(low_border(model) / waves.step + 1e-9)
+            force = Drift(model.vessel.data, model.vessel.drift, yaw)
+            last = int(model.vessel.difference_to / waves.step + 1e-9)
             for m, one in enumerate(waves.directions):
                 for n, other in enumerate(waves.directions):
-                    self.tables[m, n] = difference_table(waves.omega, t2, one, other, last)
+                    self.sums[m, n] = difference_sum(force, waves.omega, one, other, last)
 
     def difference(self, amplitudes: Array) -> Array:
         """G_k of the slow drift force, k = 0 … (K, 6); empty without drift."""
-        parts = [collect(table, amplitudes[m], amplitudes[n]) for (m, n), table in self.tables.items()]
+        parts = [collected(amplitudes[m], amplitudes[n]) for (m, n), collected in self.sums.items()]
         return np.sum(parts, axis=0) if parts else np.zeros((0, 6), dtype=complex)
 
     def table(self, amplitudes: Array) -> Array:

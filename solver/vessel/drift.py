@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -51,20 +52,29 @@ class Drift:
         if self.kind == "none" or self.data is None:
             return np.zeros((*omega_m.shape, 6))
         if self.kind == "qtf":
-            qtf = self.data.qtf
-            assert qtf is not None
-            heading_m, heading_n = direction_m - self.yaw, direction_n - self.yaw
-            if direction_n == direction_m or qtf.knows(heading_m, heading_n):
-                values = qtf.at(omega_m, omega_n, heading_m, heading_n)
-            else:
-                values = 0.5 * (qtf.at(omega_m, omega_n, heading_m) + qtf.at(omega_m, omega_n, heading_n))
-            return turned_force(values, self.yaw)
+            return self._of_pairs(lambda qtf, *headings: qtf.at(omega_m, omega_n, *headings), direction_m, direction_n)
         first = self.data.mean_drift_at(omega_m, direction_m - self.yaw)
         second = self.data.mean_drift_at(omega_n, direction_n - self.yaw)
         if self.kind == "newman":
             return turned_force(0.5 * (first + second), self.yaw)
         product = first * second
         return turned_force(np.sign(first) * np.sqrt(np.maximum(product, 0.0)), self.yaw)
+
+    def nodal(self, direction_m: float, direction_n: float) -> Array:
+        """T2 of `qtf` at the nodes of its hats, earth axes, complex (N+1, N+1, 6); unknown pairs are zero (V23, V24)."""
+        return self._of_pairs(lambda qtf, *headings: qtf.nodal(*headings), direction_m, direction_n)
+
+    def _of_pairs(self, find: Callable[..., Array], direction_m: float, direction_n: float) -> Array:
+        """What `find(qtf, headings…)` gives of two directions, in earth axes (V24)."""
+        assert self.data is not None
+        qtf = self.data.qtf
+        assert qtf is not None
+        heading_m, heading_n = direction_m - self.yaw, direction_n - self.yaw
+        if direction_n == direction_m or qtf.knows(heading_m, heading_n):
+            values = find(qtf, heading_m, heading_n)
+        else:
+            values = 0.5 * (find(qtf, heading_m) + find(qtf, heading_n))
+        return turned_force(values, self.yaw)
 
     def warnings(self, directions: Sequence[float]) -> tuple[str, ...]:
         """What to say of wave systems that travel in these directions [rad] (V24)."""
@@ -171,6 +181,40 @@ def collect(table: Array, upper: Array, lower: Array | None = None) -> Array:
     for k in range(table.shape[0]):
         result[k] = (upper[k:] * np.conj(lower[: lower.size - k])) @ table[k, : lower.size - k]
     return result
+
+
+def collect_pairs(hats: Array, nodal: Array, upper: Array, lower: Array, last: int) -> Array:
+    """G_k, k = 0 … last, of a T2 that is bilinear between nodes, by products in time: complex (last + 1, 6) (V28).
+
+    hats : (N, M) weights of the nodes at the components; nodal : T2 at the nodes (M, M, 6); upper, lower : amplitudes
+    (N,) of the components m and n. With z(t) = Σ_n h(ω_n) A_n e^{iω_n t} of each node the force is zᵀ T z*, and G_k its
+    Fourier coefficient: memory and work grow with N, where a table of all differences grows with N².
+    """
+    count = upper.size
+    size = 1 << max(2 * count - 1, 1).bit_length()
+    z_upper, z_lower = (np.fft.ifft(hats * part[:, None], size, axis=0) * size for part in (upper, lower))
+    force = np.zeros((size, 6), dtype=complex)
+    for dof in np.flatnonzero(np.any(nodal != 0.0, axis=(0, 1))):
+        force[:, dof] = np.einsum("tm,tm->t", z_upper @ nodal[..., dof], np.conj(z_lower))
+    return np.asarray(np.fft.fft(force, axis=0)[: min(last, count - 1) + 1] / size)
+
+
+def difference_sum(
+    force: Drift, omega: Array, direction_m: float, direction_n: float, last: int
+) -> Callable[[Array, Array], Array]:
+    """G_k, k = 0 … last, of components omega (N,) of two wave systems, as a function of their amplitudes (N,) (V28).
+
+    Raises DataError where a QTF does not know pairs of these differences.
+    """
+    if force.kind != "qtf":
+        return partial(collect, difference_table(omega, force, direction_m, direction_n, last))
+    assert force.data is not None
+    qtf = force.data.qtf
+    assert qtf is not None
+    step = float(omega[1] - omega[0]) if omega.size > 1 else 0.0
+    last = min(last, omega.size - 1)
+    qtf.check_difference(last * step, float(omega[0]), float(omega[-1]))
+    return partial(collect_pairs, qtf.hats(omega), force.nodal(direction_m, direction_n), last=last)
 
 
 def slow_drift(omega: Array, amplitudes: Array, directions: Sequence[float], t2: T2, last: int) -> Array:

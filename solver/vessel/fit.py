@@ -42,7 +42,7 @@ def fit(case: Case, data: HydrodynamicData) -> tuple[str, ...]:
     headings = [float(sea.direction) - float(case.vessel.heading) for sea in case.environment.seastates]
     doubts = (
         *_below_the_data(case, data, low), *_below_the_pairs(case, choice, data, low),
-        *Drift(data, choice.drift).warnings(headings),
+        *Drift(data, choice.drift).warnings(headings), *_differences(case, choice),
     )  # fmt: skip
     return (*data.warnings, *quality_warnings(data, low, high), *doubts)
 
@@ -51,6 +51,24 @@ def lowest_wave(case: Case) -> float:
     """The lowest frequency of the case's waves [rad/s]: the band's, where there are random ones, and of regular waves."""
     regular = [2 * math.pi / sea.period for sea in case.environment.seastates if isinstance(sea, RegularWave)]
     return min([*regular, *([_band(case)[0]] if case.environment.random or not regular else [])])
+
+
+def difference_to(case: Case, data: HydrodynamicData | None) -> float:
+    """Highest difference frequency of the slow drift [rad/s]: `low.to`, or with a full QTF `difference.to`, which is by
+    default the largest difference that the waves and the pairs of the QTF have."""
+    fd = case.analyses.frequency_domain or FrequencyDomain()
+    drift = case.vessel.hydrodynamics.drift if case.vessel is not None and case.vessel.hydrodynamics else "none"
+    if drift != "qtf" or data is None or data.qtf is None:
+        return float(fd.low.to)
+    if fd.difference.to is not None:
+        return float(fd.difference.to)
+    return max(float(fd.low.to), data.qtf.covered(*_waves(case)))
+
+
+def _waves(case: Case) -> tuple[float, float]:
+    """Lowest and highest frequency of all waves of a case, regular ones too [rad/s]."""
+    regular = [2 * math.pi / sea.period for sea in case.environment.seastates if isinstance(sea, RegularWave)]
+    return lowest_wave(case), max([_band(case)[1], *regular])
 
 
 def _band(case: Case) -> tuple[float, float]:
@@ -106,12 +124,15 @@ def _pairs(case: Case, choice: Hydrodynamics, data: HydrodynamicData, high: floa
             ("analyses", "frequency_domain", "wave", "to"),
             f"{high:g} rad/s is above the QTF; allowed: ≤ {qtf.omega[-1]:.5g}, or another drift", f"{high:g}",
         )  # fmt: skip
-    if fd.low.to > qtf.reach * (1 + PRINTED):
-        yield FieldError(
-            ("analyses", "frequency_domain", "low", "to"),
-            f"{fd.low.to:g} rad/s is above the differences for which the QTF was computed; allowed: ≤ {qtf.reach:.5g}",
-            f"{fd.low.to:g}",
-        )  # fmt: skip
+    low, top = _waves(case)
+    covered = qtf.covered(low, top)
+    for name, to in (("low", fd.low.to), ("difference", fd.difference.to)):
+        if to is not None and to > covered * (1 + PRINTED) and covered < (top - low) * (1 - PRINTED):
+            yield FieldError(
+                ("analyses", "frequency_domain", name, "to"),
+                f"{to:g} rad/s is above the differences for which the QTF was computed; allowed: ≤ {covered:.5g}",
+                f"{to:g}",
+            )
 
 
 def _directions(case: Case, choice: Hydrodynamics, data: HydrodynamicData, low: float) -> Iterator[FieldError]:
@@ -154,4 +175,13 @@ def _below_the_pairs(case: Case, choice: Hydrodynamics, data: HydrodynamicData, 
         yield (
             f"{qtf.name}: the QTF begins at {qtf.omega[0]:.4g} rad/s, the waves at {low:.4g} rad/s; in between it goes "
             f"linearly to zero at omega = 0; compute lower frequencies or raise analyses.frequency_domain.wave.from"
+        )
+
+
+def _differences(case: Case, choice: Hydrodynamics) -> Iterator[str]:
+    fd = case.analyses.frequency_domain
+    if fd is not None and fd.difference.to is not None and choice.drift != "qtf":
+        yield (
+            f"analyses.frequency_domain.difference has no effect with drift: {choice.drift}, whose slow drift ends at "
+            f"low.to, {fd.low.to:g} rad/s; use drift: qtf or leave difference out"
         )

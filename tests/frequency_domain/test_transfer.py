@@ -201,9 +201,9 @@ def test_slow_variance_is_h_s_ff_h_adjoint(source) -> None:  # type: ignore[no-u
     none = [np.zeros((0, 0)) for _ in position.geometries]
     for w, o in enumerate(omega):
         H = whole.solve(o, own[w], np.eye(6, dtype=complex), none)
-        vessel += (H[-6:] @ S[w] @ H[-6:].conj().T).real * band.strips.width
+        vessel += (H[-6:] @ S[w] @ H[-6:].conj().T).real * band.strips.widths[w]
         h = (whole.T[1] @ H)[12:15]
-        node += (o**2 * h @ S[w] @ h.conj().T).real * band.strips.width
+        node += (o**2 * h @ S[w] @ h.conj().T).real * band.strips.widths[w]
     _, low = position.respond(linear)
     assert low is not None
     assert low.vessel is not None

@@ -47,7 +47,9 @@ def test_the_narrow_peak_fills_its_panel() -> None:
 @pytest.mark.parametrize(
     ("case", "expected"),
     [
-        ({"analyses": {"frequency_domain": {"wave": {"from": 0.25}, "low": {"to": 0.2}}}}, 0.25),
+        ({"analyses": {"frequency_domain": {"wave": {"from": 0.25}, "low": {"to": 0.2}}}}, 0.2),
+        ({"analyses": {"frequency_domain": {"wave": {"from": 0.25}, "low": {"to": 0.37}}}}, 0.37),
+        ({"analyses": {"frequency_domain": {"wave": {"from": 0.25}}}}, 0.25),
         ({"analyses": {"frequency_domain": {"low": {"to": 0.15}}}}, 0.15),
         ({"analyses": {"frequency_domain": {}}}, 0.2),
         (None, 0.2),

@@ -100,6 +100,31 @@ def test_a_storm_in_both_domains() -> None:
         assert frequency["lines"][line]["tension_std"]["wf"][-1] == pytest.approx(theirs, rel=0.1)
 
 
+def _slow_heave(**difference: float) -> dict[str, float]:
+    """σ of heave by origin and by band, the waves from astern as in the example."""
+    data = json.loads(load_case(EXAMPLE.read_bytes()).canonical())
+    data["analyses"]["frequency_domain"]["difference"] |= difference
+    summary = run(select(parse_case(data), ("frequency_domain",)), FileSource(volturnus()), threads=1).summary
+    found = summary["frequency_domain"]
+    assert bool([text for text in summary["warnings"] if "mode of heave" in text]) == ("to" in difference)
+    origins = {origin: found["origin_std"][origin]["heave"] for origin in ("first_order", "second_order")}
+    return origins | {band: found["vessel_std"][band]["heave"] for band in ("wf", "lf")}
+
+
+@pytest.mark.slow
+def test_slow_heave_does_not_end_at_the_border() -> None:
+    """Resonance at 0.305 rad/s lies above the border, 0.25 rad/s, and inside the wave band."""
+    cut, whole, fine = _slow_heave(to=0.25), _slow_heave(), _slow_heave(step=0.0025)
+    assert cut["second_order"] == pytest.approx(cut["lf"], rel=1e-12)
+    assert cut["wf"] == pytest.approx(cut["first_order"], rel=1e-12)
+    assert whole["second_order"] > 2.5 * cut["second_order"]
+    assert whole["second_order"] == pytest.approx(0.302, rel=0.02)
+    assert whole["lf"] == pytest.approx(cut["lf"], rel=0.02)
+    assert whole["wf"] ** 2 + whole["lf"] ** 2 == pytest.approx(whole["first_order"] ** 2 + whole["second_order"] ** 2)
+    for key in whole:
+        assert fine[key] == pytest.approx(whole[key], rel=0.01)
+
+
 def _short() -> Case:
     data = json.loads(load_case(EXAMPLE.read_bytes()).canonical())
     data["analyses"]["time_domain"] |= {"seeds": 2, "duration": 1800.0, "build_up": 600.0}

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
 from solver.kernels.arrays import MEAN, Sea
 from solver.kernels.waves import water_at
+from solver.outcome import DataError
 from solver.time_domain.block import Run
-from solver.time_domain.sea import Components
+from solver.time_domain.sea import Components, low_border
 from solver.time_domain.water import POINTS
-from solver.vessel.drift import Drift
+from solver.vessel.drift import Drift, drift_spectrum
 from solver.waves.kinematics import velocity
 from solver.waves.spectra import spectrum
+from tests.frequency_domain.test_bands import with_qtf
 from tests.systems import Source
 from tests.time_domain.systems import prepared
 from tests.time_domain.test_ensemble import _box
@@ -76,9 +79,9 @@ def test_a_seed_is_a_sea_of_its_own(run: Run) -> None:
 def test_force_of_the_waves_has_the_variance_of_its_spectrum_exactly(run: Run) -> None:
     assert run.vessel is not None
     waves = _waves(run)
-    run.vessel.tables, kept = {}, run.vessel.tables
+    run.vessel.sums, kept = {}, run.vessel.sums
     force = run.vessel.table(waves.amplitudes(1, False))
-    run.vessel.tables = kept
+    run.vessel.sums = kept
     # two systems share their frequencies: their cross term has the phases of the seed
     A = waves.amplitudes(1, False)
     phasor = sum(X * a[:, None] for X, a in zip(run.vessel.first_order, A, strict=True))
@@ -151,3 +154,74 @@ def test_error_of_the_cubic_is_as_stated(share: float) -> None:
         worst = max(worst, abs(out[0, 0, 0] - math.cos(w * t)))
     assert worst <= 0.024 * w**4 + 1e-12
     assert worst > 0.015 * w**4
+
+
+# --- a full QTF: differences beyond the border of the bands
+
+
+def _with_pairs(border: float, **frequency: Any) -> dict[str, Any]:
+    data = _box(duration=300.0)
+    data["vessel"]["hydrodynamics"]["drift"] = "qtf"
+    data["analyses"]["frequency_domain"] |= {"low": {"to": border}, **frequency}
+    return data
+
+
+def test_slow_drift_of_a_full_qtf_is_the_double_sum(source: Source) -> None:
+    """Two systems of different directions, differences up to 0.7 rad/s, the border at 0.4."""
+    run = Run(*prepared(_with_pairs(0.4, difference={"to": 0.7}), with_qtf(source)))
+    assert run.vessel is not None
+    assert run.model.vessel is not None
+    waves = _waves(run)
+    A = waves.amplitudes(2, False)
+    G = run.vessel.difference(A)
+    assert G.shape[0] == int(0.7 / waves.step + 1e-9) + 1
+    force = Drift(run.model.vessel.data, "qtf", float(run.static.position[5]))
+    for k in (1, 5, int(0.4 / waves.step) + 3, G.shape[0] - 1):
+        n = np.arange(waves.omega.size - k)
+        expected = np.zeros(6, dtype=complex)
+        for i, one in enumerate(waves.directions):
+            for j, other in enumerate(waves.directions):
+                T = force(waves.omega[n + k], waves.omega[n], one, other)
+                expected += (A[i][n + k] * np.conj(A[j][n])) @ T
+        np.testing.assert_allclose(G[k], expected, rtol=1e-9, atol=1e-9 * np.abs(G).max())
+
+
+@pytest.mark.parametrize("drift", ["newman", "qtf"])
+def test_slow_drift_ends_at_the_border_only_without_a_full_qtf(drift: str, source: Source) -> None:
+    data = _with_pairs(0.4)
+    data["vessel"]["hydrodynamics"]["drift"] = drift
+    run = Run(*prepared(data, with_qtf(source)))
+    assert run.vessel is not None
+    waves = _waves(run)
+    last = run.vessel.difference(waves.amplitudes(1, False)).shape[0] - 1
+    assert last * waves.step == pytest.approx(
+        0.4 if drift == "newman" else waves.omega[-1] - waves.omega[0], abs=waves.step
+    )
+    assert low_border(run.model) == 0.4
+
+
+def test_force_above_the_border_has_the_variance_of_its_spectrum(source: Source) -> None:
+    """Mean over seeds of ½|2 G_k|² against ∫ S_FF dω of (V26), below and above the border."""
+    data = _with_pairs(0.3)
+    data["environment"]["seastates"] = data["environment"]["seastates"][:1]
+    data["environment"].pop("current")
+    run = Run(*prepared(data, with_qtf(source)))
+    assert run.vessel is not None
+    assert run.model.vessel is not None
+    waves = _waves(run)
+    G = np.array([run.vessel.difference(waves.amplitudes(seed, True)) for seed in range(400)])
+    k = waves.step * np.arange(G.shape[1])
+    power = 2.0 * (np.abs(G) ** 2).mean(axis=0)
+    force = Drift(run.model.vessel.data, "qtf", float(run.static.position[5]))
+    sea = run.model.case.environment.random[0]
+    systems = [(lambda omega: spectrum(omega, sea), waves.directions[0])]
+    S = np.einsum("kii->ki", drift_spectrum(k[1:], systems, force, *run.model.vessel.band).real)
+    for inside in (k[1:] <= 0.3, (k[1:] > 0.3) & (k[1:] < 0.8)):
+        found, expected = power[1:][inside].sum(axis=0), waves.step * S[inside].sum(axis=0)
+        np.testing.assert_allclose(found, expected, rtol=0.06)
+
+
+def test_pairs_that_are_not_known_are_refused(source: Source) -> None:
+    data = _with_pairs(0.4, difference={"to": 0.7})
+    with pytest.raises(DataError, match=r"up to 0.4 rad/s.*difference.to"):
+        Run(*prepared(data, with_qtf(source, reach=0.5)))

@@ -17,7 +17,7 @@ from . import wamit_sets as sets
 from .test_quality import consistent, with_pairs
 
 
-def case(drift="qtf", direction=0.0, low=0.2, wave=(0.25, 1.2), tp=10.0, regular=None):
+def case(drift="qtf", direction=0.0, low=0.2, wave=(0.25, 1.2), tp=10.0, regular=None, difference=None):
     sea = {"spectrum": "jonswap", "hs": 3.0, "tp": tp, "gamma": 1.0, "direction": f"{direction} deg"}
     if regular:
         sea = {"wave": "regular", "height": 0.2, "period": regular, "direction": f"{direction} deg"}
@@ -28,7 +28,10 @@ def case(drift="qtf", direction=0.0, low=0.2, wave=(0.25, 1.2), tp=10.0, regular
             "hydrodynamics": {"data": "x", "drift": drift},
         },
         "analyses": {
-            "frequency_domain": {"wave": {"from": wave[0], "to": wave[1], "step": 0.01}, "low": {"to": low, "step": 0.01}}
+            "frequency_domain": {
+                "wave": {"from": wave[0], "to": wave[1], "step": 0.01}, "low": {"to": low, "step": 0.01},
+                "difference": {} if difference is None else {"to": difference},
+            }
         },
     })  # fmt: skip
 
@@ -61,7 +64,11 @@ def test_each_field_that_asks_for_more_is_named(data):
     closer = dataclasses.replace(data, qtf=sets.qtf(np.arange(0.2, 1.25, 0.05), [0.0], cross=(), reach=0.151))
     found = fault(case(low=0.2), closer)
     assert found.field == "analyses.frequency_domain.low.to"
-    assert "allowed: ≤ 0.15" in found.message
+    assert "allowed: ≤ 0.1" in found.message
+    fit(case(low=0.1), closer)  # and at the limit it is content
+    found = fault(case(low=0.1, difference=0.12), closer)
+    assert found.field == "analyses.frequency_domain.difference.to"
+    assert "allowed: ≤ 0.1" in found.message
     found = fault(case(drift="newman"), dataclasses.replace(data, mean_drift=None))
     assert "use drift: qtf" in found.message
     found = fault(case(), dataclasses.replace(data, qtf=None))
@@ -124,6 +131,40 @@ def test_the_qtf_is_exact_where_it_is_bilinear():
     half = qtf.at(np.array([0.15]), np.array([0.3]), 0.0)
     assert np.allclose(half, 0.5 * qtf.at(np.array([0.3]), np.array([0.3]), 0.0))
     assert not qtf.at(np.zeros(1), np.zeros(1), 0.0).any()
+
+
+@pytest.mark.parametrize(
+    "omega", [np.arange(0.2, 1.25, 0.05), np.array([0.2, 0.23, 0.3, 0.4, 0.5, 0.6, 0.65, 0.75, 0.9, 1.0, 1.1, 1.2])]
+)
+@pytest.mark.parametrize(
+    ("reach", "low", "high"), [(0.151, 0.2, 1.2), (0.31, 0.25, 1.1), (0.31, 0.47, 1.2), (9.0, 0.1, 1.2)]
+)
+def test_all_pairs_up_to_the_covered_difference_can_be_had(omega, reach, low, high):
+    qtf = sets.qtf(omega, [0.0], cross=(), reach=reach)
+    covered = qtf.covered(low, high)
+    first = np.linspace(low, high - covered, 4001)
+    for difference in np.linspace(0.0, covered, 9):
+        qtf.at(first + difference * (high - covered - low > -1), first, 0.0)
+    if reach > 1:
+        assert covered == pytest.approx(high - low)
+        return
+    near = np.linspace(low, high, 40001)
+    with pytest.raises(DataError, match=r"difference\.to"):
+        qtf.at(near[near < high - covered - 0.01] + covered + 0.01, near[near < high - covered - 0.01], 0.0)
+    with pytest.raises(DataError, match=r"difference\.to"):
+        qtf.check_difference(covered + 0.01, low, high)
+    qtf.check_difference(covered, low, high)
+
+
+def test_hats_and_nodes_are_the_bilinear_table():
+    rng = np.random.default_rng(4)
+    qtf = sets.qtf([0.3, 0.5, 0.8, 1.1], np.radians([0.0, 90.0]))
+    m, n = rng.uniform(0.0, 1.1, 40), rng.uniform(0.0, 1.1, 40)
+    for headings in ((0.3, None), (0.3, 1.2)):
+        found = np.einsum("wa,abd,wb->wd", qtf.hats(m), qtf.nodal(*headings), qtf.hats(n))
+        np.testing.assert_allclose(found, qtf.at(m, n, *headings), rtol=1e-12, atol=1e-9)
+    with pytest.raises(DataError, match="above the highest frequency"):
+        qtf.hats(np.array([1.2]))
 
 
 def test_whether_waves_feel_the_bottom_is_judged_at_the_cases_longest(data):

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from ...outcome import DataError
-from .interpolate import check_range, heading_weights
+from .interpolate import PRINTED, check_range, heading_weights
 
 Array = np.ndarray
 HERMITIAN = 1e-3  # of the largest force, or moment
+ROUND_OFF = 1e-9
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,32 @@ class QTF:
         inside = gap < gap[unknown].min() * (1 - 1e-6) if unknown.any() else np.ones_like(unknown)
         return float(gap[inside].max())
 
+    def covered(self, low: float, high: float) -> float:
+        """Largest difference of two frequencies within low to high [rad/s] for which (V23) needs no unknown pair.
+
+        It is below `reach` where pairs are missing: between the frequencies of the data T2 takes their four neighbours.
+        """
+        nodes = np.concatenate([[0.0], self.omega])
+        known = ~np.any([np.isnan(self._to_zero(table)[1][..., 0]) for table in self._tables()], axis=0)
+        used = np.flatnonzero((nodes[:-1] < high * (1 - ROUND_OFF)) & (nodes[1:] > low * (1 + ROUND_OFF)))
+        cell = known[:-1, :-1] & known[1:, :-1] & known[:-1, 1:] & known[1:, 1:]
+        first = np.maximum(nodes[:-1], low)[:, None] - np.minimum(nodes[1:], high)[None, :]
+        unknown = ~cell[np.ix_(used, used)] & (used[:, None] >= used[None, :])
+        nearest = first[np.ix_(used, used)][unknown].min(initial=high - low)
+        return float(np.clip(nearest, 0.0, high - low))
+
+    def check_difference(self, difference: float, low: float, high: float) -> None:
+        """Raises DataError when pairs within low to high [rad/s] of a difference up to this one are unknown."""
+        covered = self.covered(low, high)
+        if difference > covered * (1 + PRINTED) + ROUND_OFF:
+            raise DataError(
+                f"{self.name}: the QTF is asked for differences up to {difference:.4g} rad/s, but its pairs give T2 up "
+                f"to {covered:.4g} rad/s; compute more pairs or lower analyses.frequency_domain.low.to and difference.to"
+            )
+
+    def _tables(self) -> list[Array]:
+        return [*self.values, *self.cross.values()]
+
     def diagonal(self) -> Array:
         """Mean drift per amplitude squared, real (N, H, 6)."""
         return np.asarray(np.diagonal(self.values, axis1=1, axis2=2).real.transpose(2, 0, 1))
@@ -92,19 +119,38 @@ class QTF:
         shape = np.broadcast_shapes(np.shape(omega_m), np.shape(omega_n))
         m, n = (np.broadcast_to(np.asarray(part, float), shape).ravel() for part in (omega_m, omega_n))
         for part in (m, n):
-            check_range(part, 0.0, float(self.omega[-1]), self.name, "the QTF")
+            self._check(part)
         m, n = np.minimum(m, self.omega[-1]), np.minimum(n, self.omega[-1])
+        return np.asarray(self._bilinear(self._table(heading, heading_n), m, n).reshape(*shape, 6))
+
+    def nodal(self, heading: float, heading_n: float | None = None) -> Array:
+        """T2 at the nodes of `hats`, complex (N+1, N+1, 6); zero for pairs that were not computed (V23)."""
+        return np.nan_to_num(self._to_zero(self._table(heading, heading_n))[1])
+
+    def hats(self, omega: Array) -> Array:
+        """Weights (W, N+1) of omega = 0 and the frequencies of the data at omega (W,): T2(m, n) = h(m) T h(n)ᵀ (V23)."""
+        self._check(omega)
+        nodes = np.concatenate([[0.0], self.omega])
+        lower, share = _bracket(nodes, np.minimum(omega, nodes[-1]))
+        weights, rows = np.zeros((omega.size, nodes.size)), np.arange(omega.size)
+        weights[rows, lower], weights[rows, lower + 1] = 1.0 - share, share
+        return weights
+
+    def _check(self, omega: Array) -> None:
+        check_range(omega, 0.0, float(self.omega[-1]), self.name, "the QTF")
+
+    def _table(self, heading: float, heading_n: float | None) -> Array:
+        """T2 over the frequencies of the data for the headings of the waves m and n, (N, N, 6)."""
         if heading_n is None or abs(heading_n - heading) < 1e-9:
             i, j, w = heading_weights(self.headings, heading, self.name)
-            table = self.values[i] if w == 0.0 else (1.0 - w) * self.values[i] + w * self.values[j]
-        else:
-            table = np.zeros_like(self.values[0])
-            for a, b, weight in self._corners(heading, heading_n):
-                found = self._pair(a, b)
-                if found is None:
-                    raise DataError(f"{self.name}: the QTF holds no pairs of these two headings")
-                table = table + weight * found
-        return np.asarray(self._bilinear(table, m, n).reshape(*shape, 6))
+            return np.asarray(self.values[i] if w == 0.0 else (1.0 - w) * self.values[i] + w * self.values[j])
+        table = np.zeros_like(self.values[0])
+        for a, b, weight in self._corners(heading, heading_n):
+            found = self._pair(a, b)
+            if found is None:
+                raise DataError(f"{self.name}: the QTF holds no pairs of these two headings")
+            table = table + weight * found
+        return table
 
     def _corners(self, heading_m: float, heading_n: float) -> list[tuple[int, int, float]]:
         """The pairs of heading indices around two headings, and their weights."""
@@ -135,7 +181,7 @@ class QTF:
                     raise DataError(
                         f"{self.name}: the QTF is asked for at {m[lacking[0]]:.4g} and {n[lacking[0]]:.4g} rad/s, but "
                         f"was computed for differences up to {self.reach:.4g} rad/s; compute more pairs or lower "
-                        f"the border of the low band (analyses.frequency_domain.low.to)"
+                        f"analyses.frequency_domain.low.to and difference.to"
                     )
                 result += weight[:, None] * filled[a + di, b + dj]
         return result

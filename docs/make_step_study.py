@@ -186,6 +186,9 @@ def page(table: list[tuple[str, float, float, float, float, float, str]]) -> str
         f"{100 * WEIGHED:g} % of the largest range.", "",
         f"The largest error without a word is {silent:.1f} %, with a warning {let:.1f} %. Of {len(good)} refused runs {hard}",
         "are less than 5 % off: the limits err to that side.", "",
+        "Every run here was marched to its end, its limits off. A user's run that is refused stops as soon as it exceeds",
+        "twice a limit; it names the step, or the tolerance, that did in a trial, and what it computed is kept apart as",
+        "doubtful ([summary](summary.md#a-time-domain-that-was-refused)).", "",
         "| system | step, s | peak, % | σ, % | kink, % | blow, % | answer |", "| --- | --- | --- | --- | --- | --- | --- |",
     ]  # fmt: skip
     for name, h, peak, sigma, kink, blow, said in table:

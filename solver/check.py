@@ -8,6 +8,7 @@ from .vessel.data import DataSource, HydrodynamicData, open_for
 from .vessel.fit import fit, lowest_wave
 from .vessel.rigid import buoyancy_minus_weight, hydrostatic_stiffness, mass_matrix, water_warnings
 from .waves.spectra import hs_in_band, significant_height
+from .waves.steepness import steepness_warnings
 
 IN_BAND = 0.97  # of Hs: below it the wave band is said to miss part of the sea
 
@@ -29,7 +30,7 @@ def check(case: Case, data: DataSource | None) -> list[str]:
         hydrostatic_stiffness(case.vessel, hydro)
         if case.vessel.trim == "as_given":
             buoyancy_minus_weight(case.vessel, hydro, case.environment)
-    return warnings + _bands(case)
+    return [*warnings, *steepness_warnings(case.environment), *_bands(case)]
 
 
 def _opened(case: Case, data: DataSource | None) -> HydrodynamicData:

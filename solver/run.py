@@ -13,16 +13,20 @@ from .case.analysis import Analyses
 from .check import check
 from .model.build import Model, build
 from .model.line import harmonic_omega
+from .modes.natural import longest_period
 from .modes.vessel import unreached_modes
 from .outcome import CaseError, FieldError, NotConverged
 from .plan import plan
 from .results.channels import make_channels, make_time_channels
+from .results.doubt import add_doubtful
 from .results.part import Chunk, OnProgress, Part, Progress, Result
 from .results.solved import Solved
+from .results.strain import allowed_tension
 from .results.summary import make_summary, provenance
 from .results.time import KEY, merge_time, time_part, time_summary, time_warnings
 from .statics.solve import StaticState, solve_statics
 from .time_domain.ensemble import march_ensemble
+from .time_domain.probe import StepTooLong
 from .time_domain.sea import low_border, whole_period
 from .vessel.data import DataSource
 from .warm import warm_up, warm_up_time_domain
@@ -139,6 +143,7 @@ def merge(case: Case, parts: list[Part]) -> Result:
         summary["compile_time"] = summary.get("compile_time", 0.0) + part.summary.get("compile_time", 0.0)
     time_result = merge_time(parts)
     if "time_domain" in summary["failures"]:
+        add_doubtful(summary, time_result)
         time_result = None
     if time_result is not None:
         summary["time_domain"] = time_summary(time_result)
@@ -162,7 +167,7 @@ def _time_chunk(
     assert chunk.seeds is not None
     seeds = list(range(*chunk.seeds))
     turned = model.vessel.damping_warnings(float(static.position[5])) if model.vessel is not None else ()
-    about = {
+    about: dict[str, Any] = {
         "warnings": [*model.warnings, *static.warnings, *turned],
         "compile_time": compile_time,
         "provenance": provenance(model),
@@ -174,14 +179,18 @@ def _time_chunk(
     try:
         record, timing = march_ensemble(model, static, spec, seeds, threads, report, checkpoint)
     except NotConverged as failure:
-        return Part({**about, "failures": {"time_domain": str(failure)}})
+        about["failures"] = {"time_domain": str(failure)}
+        if not isinstance(failure, StepTooLong) or failure.partial is None:
+            return Part(about)
+        record, timing = failure.partial
     most = max(line.nodes for line in static.lines)
     lines = [
         {"name": line.name, "gap": most - line.nodes, "arc_length": line.element_arc.tolist(), "length": line.length,
-         "anchor": line.anchor_end} for line in static.lines
+         "anchor": line.anchor_end, "allowed": allowed_tension(line).tolist()} for line in static.lines
     ]  # fmt: skip
     omega, random = harmonic_omega(model.case), bool(model.case.environment.random)
-    periodic = omega is None and whole_period(spec, timing.duration)
+    periodic = omega is None and "failures" not in about and whole_period(spec, timing.duration)
     part = time_part(record, timing, lines, low_border(model), omega, random, periodic)
+    part.summary[KEY]["longest_period"] = longest_period(model, static) if random else None
     tell(Progress(1.0, "done"))
     return Part({**about, **part.summary}, (), part.arrays)

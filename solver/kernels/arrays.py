@@ -81,7 +81,7 @@ class Setup(NamedTuple):
     memory: Memory
     base: Array  # (2, 3, Q) end b and end a at rest
     table: Array  # (7,) coefficients of the scheme
-    limits: Array  # (4,) tolerance in displacement [m], in force [N], most iterations, steps between renewals
+    limits: Array  # (5,) tolerance [m] and [N], most iterations, steps between renewals, first step watched
     build_up: float
 
 
@@ -101,7 +101,7 @@ class State(NamedTuple):
 
 
 class Watch(NamedTuple):
-    """What is seen at every kept step, besides the outputs (T16, T17); part of a checkpoint."""
+    """What is seen at every watched step, besides the outputs (T16, T17); that of kept steps is part of a checkpoint."""
 
     range: Array  # (2, N, Q) least and largest tension
     last: Array  # (2, N, Q) tension one and two steps ago

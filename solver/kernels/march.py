@@ -21,11 +21,12 @@ def march(setup, state, work, spare, first, count, h, every, out, watch, counts)
 
     every : steps between outputs, the first of them that long after time 0. out : vessel (n, S, 6), tension (n, N, Q)
     float32, ends (n, 6, Q) of this block (rows ENDS). counts : (3,) iterations, divided steps, outputs written.
-    Returns (status, step, seed).
+    watch : taken from step number setup.limits[4] on, build-up or not. Returns (status, step, seed).
     """
     S = work.ds.shape[0]
     done = np.zeros(S, dtype=np.int64)
     memory, begins, renewal = setup.memory, round(setup.build_up / h), int(setup.limits[3])
+    watched = int(setup.limits[4])
     for k in range(first, first + count):
         time = -setup.build_up + k * h
         if memory.rows.shape[1] > 0 and k % memory.every == 0:
@@ -43,14 +44,14 @@ def march(setup, state, work, spare, first, count, h, every, out, watch, counts)
         if sharp(state.x, setup.lines.C, work.t):
             return SHARP, k, 0
         kept = k + 1 - begins
-        if kept > 0:
-            output = kept % every == 0
-            if watch_step(setup, state, work, watch) or output:
-                forces_now(setup, state, work, time + h)
-                watch_ends(setup, work, watch)
-            if output:
-                write(setup, state, work, out, int(counts[2]))
-                counts[2] += 1
+        output = kept > 0 and kept % every == 0
+        extreme = k >= watched and watch_step(setup, state, work, watch)
+        if output or (extreme and kept > 0):
+            forces_now(setup, state, work, time + h)
+            watch_ends(setup, work, watch)
+        if output:
+            write(setup, state, work, out, int(counts[2]))
+            counts[2] += 1
     return OK, first + count, 0
 
 

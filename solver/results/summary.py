@@ -14,6 +14,7 @@ from ..waves.spectra import hs_in_band, significant_height
 from .line_values import grounded_length, largest, utilisation
 from .solved import END_FORCES, ORIGINS, Solved, Spectra
 from .statistics import combined_maximum, most_probable_maximum, significant
+from .strain import allowed_tension, strain_warnings
 
 Array = np.ndarray
 BANDS = ("wf", "lf")
@@ -41,11 +42,26 @@ def make_summary(solved: Solved, analyses: tuple[str, ...], compile_time: float)
     found = [*solved.model.warnings, *solved.static.warnings]
     if solved.frequency is not None:
         found += solved.frequency.warnings
+    found += _strains(solved, out)
     out["warnings"] = list(dict.fromkeys(found))
     out["failures"] = dict(solved.failures)
     out["provenance"] = provenance(solved.model)
     out["compile_time"] = compile_time
     return out
+
+
+def _strains(solved: Solved, summary: dict[str, Any]) -> list[str]:
+    """What to say of strains in statics and at the largest tension of the frequency domain."""
+    said: list[str] = []
+    by_line = summary.get("frequency_domain", {}).get("lines", {})
+    for line, shape in zip(solved.lines, solved.static.state.shapes, strict=True):
+        static, allowed = axial.tension(line.arrays, shape), allowed_tension(line)
+        said += strain_warnings(line.name, line.element_arc, static, allowed, "in static equilibrium")
+        found = by_line.get(line.name, {})
+        largest = found.get("tension_most_probable_max", static + np.array(found.get("tension_amplitude", 0.0)))
+        if found:
+            said += strain_warnings(line.name, line.element_arc, np.array(largest), allowed, "in the frequency domain")
+    return said
 
 
 def _list(values: Array) -> list[Any]:

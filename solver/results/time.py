@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,6 +17,8 @@ from ..time_domain.statistics import band_variances, first_harmonic, over_seeds,
 from .channel import Axis
 from .channels import Made, channel
 from .part import Part
+from .sampling import sampling_summary, sampling_warnings
+from .strain import strain_warnings
 
 Array = np.ndarray
 KEY = "time_domain_part"
@@ -121,10 +124,12 @@ class TimeResult:
 
 
 def merge_time(parts: list[Part]) -> TimeResult | None:
-    """All seeds of the time-domain parts; None without any."""
+    """All seeds of the time-domain parts; None without any. Where refused chunks ended early, those that went farthest."""
     found = sorted((part for part in parts if KEY in part.summary), key=lambda part: part.summary[KEY]["seeds"][0])
     if not found:
         return None
+    farthest = max(part.summary[KEY]["kept"] for part in found)
+    found = [part for part in found if part.summary[KEY]["kept"] == farthest]
     heads = [part.summary[KEY] for part in found]
     arrays = {
         name: np.concatenate([part.arrays[name] for part in found], axis=1 if name == "vessel" else -1)
@@ -136,8 +141,15 @@ def merge_time(parts: list[Part]) -> TimeResult | None:
 
 
 def time_warnings(result: TimeResult) -> list[str]:
-    """What speaks against the length of the step, as sentences."""
-    return [one.sentence(result.head["h"]) for one in worst(result.head["findings"])]
+    """What speaks against the length of the step, of the record, and against the strains, as sentences."""
+    steps = [one.sentence(result.head["h"]) for one in worst(result.head["findings"])]
+    return [*steps, *sampling_warnings(result), *_strains(result)]
+
+
+def _strains(result: TimeResult) -> Iterator[str]:
+    for line in result.head["lines"]:
+        highest = result.elements("highest", line["name"]).max(axis=-1)
+        yield from strain_warnings(line["name"], line["arc_length"], highest, line["allowed"], "in the time domain")
 
 
 def time_summary(result: TimeResult) -> dict[str, Any]:
@@ -155,7 +167,7 @@ def time_summary(result: TimeResult) -> dict[str, Any]:
         out["vessel_std_error"] = {band: _by_dof(moved[f"{band}_error"]) for band in ("wf", "lf")}
         out["vessel_mean"] = _by_dof(result.arrays["vessel"].mean(axis=(0, 1), dtype=float))
     out["lines"] = {line["name"]: _line(result, line) for line in head["lines"]}
-    return out
+    return {**out, **sampling_summary(result)}
 
 
 def _over_seeds(result: TimeResult) -> dict[str, Array]:

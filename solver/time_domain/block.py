@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import copy
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..case.analysis import TimeDomain
-from ..kernels.arrays import ENDS, EXACT, FAILED, MEAN, SHARP, Sea, Setup, State, Watch
+from ..kernels.arrays import ENDS, EXACT, FAILED, MEAN, OK, SHARP, Sea, Setup, State, Watch
 from ..kernels.march import march
 from ..model.build import Model
 from ..outcome import CaseError, FieldError, NotConverged
@@ -74,12 +75,24 @@ class Run:
             if model.vessel is not None and model.vessel.data is not None:
                 self.vessel = VesselLoads(model, self.waves, float(static.position[5]), self.time.h)
             self.water = Water(model, self.waves, padded_shapes(static), spec.wave_kinematics)
-        element = min(float(line.arrays.L.min()) for line in static.lines)
-        tension = max(float(np.abs(force).max()) for force in static.state.end_forces)
         self.stiffest = max(float(line.arrays.EA.max()) for line in static.lines)
-        self.limits = np.array(
-            [spec.tolerance * element, 100.0 * spec.tolerance * tension, spec.max_iterations, REFRESH]
+        self.limits = self._limits(float(spec.tolerance), self.time.build_up // 2)
+
+    def _limits(self, tolerance: float, watched: int) -> Array:
+        """Limits of the march: what ends a step (T3), and the number of the first step watched."""
+        element = min(float(line.arrays.L.min()) for line in self.static.lines)
+        tension = max(float(np.abs(force).max()) for force in self.static.state.end_forces)
+        return np.array(
+            [tolerance * element, 100.0 * tolerance * tension, self.spec.max_iterations, REFRESH, watched], dtype=float
         )
+
+    def finer(self, parts: int, tolerance: float, watched: int) -> Run:
+        """The same ensemble in steps of h / parts, without outputs and without an end, watched from a step of its own."""
+        one = copy.copy(self)
+        total = parts * (self.time.build_up + self.time.kept)
+        one.time = replace(self.time, h=self.time.h / parts, build_up=parts * self.time.build_up, kept=0, every=1)
+        one.total, one.limits = 100 * total, self._limits(tolerance, watched)
+        return one
 
     def blocks(self, seeds: list[int]) -> list[list[int]]:
         """Seeds cut into blocks of about LANES_WANTED lanes."""
@@ -114,6 +127,7 @@ class Block:
             np.zeros((n, len(ENDS), Q)),
         )
         self.watch = make_watch(P, Q)
+        self.early = make_watch(P, Q)  # of the second half of the build-up, for the probe alone
         self.counts = np.zeros(3, dtype=np.int64)
         self._mark()
 
@@ -183,10 +197,10 @@ class Block:
         run = self.run
         count = min(count, run.total - self.step)
         self._cover(count)
-        status, at, seed = march(
-            self.setup, self.state, self.work, self.spare, self.step, count, run.time.h, run.time.every, self.out,
-            self.watch, self.counts,
-        )  # fmt: skip
+        left = min(max(run.time.build_up - self.step, 0), count)
+        status, at, seed = self._march(self.step, left, self.early)
+        if status == OK:
+            status, at, seed = self._march(self.step + left, count - left, self.watch)
         when = (at - run.time.build_up) * run.time.h
         if status == FAILED:
             raise NotConverged(
@@ -203,6 +217,38 @@ class Block:
         self._sane(when)
         self._mark()
 
+    def _march(self, first: int, count: int, watch: Watch) -> tuple[int, int, int]:
+        time = self.run.time
+        return march(  # type: ignore[no-any-return]
+            self.setup,
+            self.state,
+            self.work,
+            self.spare,
+            first,
+            count,
+            time.h,
+            time.every,
+            self.out,
+            watch,
+            self.counts,
+        )
+
+    def finer(self, mark: dict[str, Array], parts: int, tolerance: float, settled: int) -> Block:
+        """The same seeds from a mark of this block on, in steps of h / parts; watched from step `settled` of this block on."""
+        one = copy.copy(self)
+        one.run = self.run.finer(parts, tolerance, parts * settled)
+        memory = self.setup.memory
+        one.setup = self.setup._replace(limits=one.run.limits, memory=memory._replace(every=parts * memory.every))
+        one.work, one.spare = (
+            make_work(self.state, self.work.terms.shape[1], self.setup.lines.first_wave) for _ in range(2)
+        )
+        one.state = State(*(mark[f"state/{name}"].copy() for name in State._fields))
+        one.step, one.counts = parts * int(mark["step"]), np.zeros_like(self.counts)
+        P, _, Q = one.state.x.shape
+        one.out = (np.zeros((0, *self.out[0].shape[1:])), self.out[1][:0], self.out[2][:0])
+        one.watch = one.early = make_watch(P, Q)
+        return one
+
     def _mark(self) -> None:
         """Copy what a checkpoint holds: another thread may ask for one while this block marches on."""
         state = {f"state/{name}": value.copy() for name, value in self.state._asdict().items()}
@@ -211,7 +257,7 @@ class Block:
 
     def _sane(self, when: float) -> None:
         """Refuse what is not finite, and element forces beyond all strength."""
-        high = float(self.watch.range[1].max(initial=0.0))
+        high = float(max(watch.range[1].max(initial=0.0) for watch in (self.early, self.watch)))
         if not np.all(np.isfinite(self.state.x)) or high > 0.5 * self.run.stiffest:
             raise NotConverged(
                 "time_domain", f"the motion grew without bound before t = {when:.2f} s (strain above 50 %).",

@@ -17,9 +17,11 @@ from ..outcome import Cancelled
 from ..statics.solve import StaticState
 from .block import Block, Run, Timing
 from .facing import turn_back
-from .resolution import Finding, Seen, findings
+from .probe import Probe, StepTooLong
+from .resolution import Finding, Seen, by_line, observed
 
 Array = np.ndarray
+FEWEST_OUTPUTS = 10  # that are kept of a refused run
 
 #: (share done 0…1, function that gives a checkpoint) -> None; may raise Cancelled
 Tell = Callable[[float, Callable[[], bytes]], None]
@@ -63,7 +65,8 @@ def march_ensemble(
     threads : blocks of seeds that march at once; the kernels hold no lock. The result does not depend on it.
     tell : called between blocks of time with the share done and a function that gives a checkpoint; what it raises
     passes through. checkpoint : what such a function gave in a former attempt at the same seeds.
-    Raises NotConverged for a step that cannot be done or was too long, CaseError for what the time domain does not take.
+    Raises NotConverged for a step that cannot be done, StepTooLong (with what was computed) for one that does not follow
+    the motion, CaseError for what the time domain does not take.
     """
     started = clock.perf_counter()
     run = Run(model, static, spec)
@@ -81,9 +84,15 @@ def march_ensemble(
         if index in stored:
             block.restore(stored[index])
         blocks[index] = block
-        while not block.done:
-            between()
-            block.go(block.stride)
+        probe = Probe(block)
+        try:
+            while not block.done:
+                between()
+                block.go(block.stride)
+                probe.look(between)
+        except StepTooLong as failure:
+            failure.partial = _partial(run, block)
+            raise
         block.release()
 
     if threads <= 1 or len(groups) == 1:
@@ -143,25 +152,28 @@ def _load(checkpoint: bytes | None) -> dict[int, dict[str, Array]]:
     return out
 
 
-def _gather(run: Run, blocks: list[Block]) -> Record:
+def _partial(run: Run, block: Block) -> tuple[Record, Timing] | None:
+    """What a block that was stopped wrote; None with too few outputs for any statistics."""
+    rows = int(block.counts[2])
+    if rows < FEWEST_OUTPUTS:
+        return None
+    time = run.time
+    return _gather(run, [block], rows), Timing(time.h, time.build_up, rows * time.every, time.every)
+
+
+def _gather(run: Run, blocks: list[Block], rows: int | None = None) -> Record:
+    """The record of some blocks; of their first `rows` outputs only, where given."""
     L = len(run.static.lines)
-
-    def seeds_last(values: Array) -> Array:
-        return np.moveaxis(values.reshape(*values.shape[:-1], -1, L), -2, -1)
-
-    def joined(name: str) -> Array:
-        return np.concatenate([seeds_last(getattr(block.watch, name)) for block in blocks], axis=-1)
-
-    lowest, highest = joined("range")
-    found = findings(run, Seen(lowest, highest, joined("kink"), joined("bed"), joined("reach")))
+    parts = [Seen.of(block.watch, L) for block in blocks]
+    seen = Seen(*(np.concatenate(values, axis=-1) for values in zip(*parts, strict=True)))
     record = Record(
         [seed for block in blocks for seed in block.seeds],
-        np.concatenate([block.out[0] for block in blocks], axis=1),
-        np.concatenate([seeds_last(block.out[1]) for block in blocks], axis=-1),
-        np.concatenate([seeds_last(block.out[2]) for block in blocks], axis=-1),
-        lowest, highest, joined("ends"), int(sum(block.counts[0] for block in blocks)),
-        int(sum(block.counts[1] for block in blocks)),
-        findings=found,
+        np.concatenate([block.out[0][:rows] for block in blocks], axis=1),
+        np.concatenate([by_line(block.out[1][:rows], L) for block in blocks], axis=-1),
+        np.concatenate([by_line(block.out[2][:rows], L) for block in blocks], axis=-1),
+        seen.lowest, seen.highest, np.concatenate([by_line(block.watch.ends, L) for block in blocks], axis=-1),
+        int(sum(block.counts[0] for block in blocks)), int(sum(block.counts[1] for block in blocks)),
+        findings=observed(run, seen),
     )  # fmt: skip
     turn_back(run.static, run.turned, (record.tension, record.lowest, record.highest), record.ends, record.ends_range)
     return record

@@ -8,6 +8,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
+from ..kernels.arrays import Watch
 from ..model.line import LineModel
 from ..outcome import NotConverged
 from .block import Run
@@ -35,6 +36,17 @@ class Seen(NamedTuple):
     bed: Array
     reach: Array
 
+    @classmethod
+    def of(cls, watch: Watch, lines: int) -> Seen:
+        """What a block watched."""
+        lowest, highest = by_line(watch.range, lines)
+        return cls(lowest, highest, *(by_line(part, lines) for part in (watch.kink, watch.bed, watch.reach)))
+
+
+def by_line(values: Array, lines: int) -> Array:
+    """Lanes (…, Q) as (…, L, S): lines, then seeds."""
+    return np.moveaxis(values.reshape(*values.shape[:-1], -1, lines), -2, -1)
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -48,43 +60,81 @@ class Finding:
     def as_dict(self) -> dict[str, Any]:
         return asdict(self)
 
-    def sentence(self, h: float) -> str:
-        """What was found, with the value, the limits and the remedy."""
+    @property
+    def severity(self) -> float:
+        """The value over the limit above which it is refused."""
+        return self.value / {"kink": KINK_REFUSED, "blow": BLOW_REFUSED, "reach": REACH_REFUSED}[self.what]
+
+    def fact(self, h: float) -> str:
+        """What was found, with the value and the limits."""
         if self.what == "reach":
             return (
                 f"line {self.line!r}: a node in waves went {self.place:.3g} m from its static position, where water "
-                f"velocities at the instantaneous position are wrong by up to {100 * self.value:.2g} % of their σ "
-                f"(refused above {100 * REACH_REFUSED:g} %); compare with wave_kinematics: mean"
+                f"velocities at the instantaneous position are wrong by up to {100 * self.value:.3g} % of their σ "
+                f"(refused above {100 * REACH_REFUSED:g} %)"
             )
         where = f"line {self.line!r}, {self.place:.4g} m from end a"
         if self.what == "blow":
             return (
-                f"{where}: the node strikes the seabed, whose force on it changes by {100 * self.value:.2g} % of its range "
-                f"in a step of {h:g} s (refused above {100 * BLOW_REFUSED:g} %); peaks after such blows vary by several "
-                "per cent from step to step: compare with half the step, or use a softer or damped seabed"
+                f"{where}: the node strikes the seabed, whose force on it changes by {100 * self.value:.3g} % of its range "
+                f"in a step of {h:g} s (refused above {100 * BLOW_REFUSED:g} %)"
             )
         return (
-            f"{where}: within a step of {h:g} s tension bends by {100 * self.value:.2g} % of its range (smooth below "
-            f"{100 * KINK_WARNED:g} %, refused above {100 * KINK_REFUSED:g} %); compare with half the step"
+            f"{where}: within a step of {h:g} s tension bends by {100 * self.value:.3g} % of its range (smooth below "
+            f"{100 * KINK_WARNED:g} %, refused above {100 * KINK_REFUSED:g} %)"
         )
+
+    def sentence(self, h: float) -> str:
+        """The fact with what to do about it, for a result that stands."""
+        advice = {
+            "kink": "; compare with half the step",
+            "reach": "; compare with wave_kinematics: mean",
+            "blow": "; peaks after such blows vary by several per cent from step to step: compare with half the step, or "
+            "use a softer or damped seabed",
+        }
+        return self.fact(h) + advice[self.what]
+
+
+def suspect(run: Run, watch: Watch) -> bool:
+    """Whether anything may be above an upper limit: a quick bound of what `observed` finds, for use after every stride."""
+    with np.errstate(invalid="ignore"):
+        spread = watch.range[1] - watch.range[0]
+        most = spread.max(axis=0)
+        kinks = watch.kink > KINK_REFUSED * np.maximum(spread, MOVES * most)
+        blows = watch.bed[3] > 0.5 * BLOW_REFUSED * most
+    missed = run.water.missed(float(watch.reach.max(initial=0.0))) if run.water is not None else 0.0
+    return bool(kinks.any() or blows.any() or missed > REACH_REFUSED)
 
 
 def findings(run: Run, seen: Seen) -> list[Finding]:
-    """What is above a lower limit, the worst of each kind for every line. Raises NotConverged above an upper one."""
-    limits = {"kink": KINK_REFUSED, "blow": BLOW_REFUSED, "reach": REACH_REFUSED}
+    """What is above a lower limit. Raises NotConverged above an upper one."""
+    out = observed(run, seen)
+    for one in out:
+        if one.severity > 1.0:
+            raise NotConverged("time_domain", f"{HEADS[one.what]}: {one.fact(run.time.h)}.", REMEDIES[one.what])
+    return out
+
+
+SHORTER = "Use a smaller step, a softer seabed with a wider transition, or look for a line that snaps slack there."
+HEADS = {
+    "kink": "the step is too long", "blow": "the step is too long",
+    "reach": "nodes go too far for waves at the instantaneous position",
+}  # fmt: skip
+REMEDIES = {
+    "kink": SHORTER, "blow": SHORTER,
+    "reach": "Use wave_kinematics: mean, or check the motion that carries the nodes so far.",
+}  # fmt: skip
+
+
+def observed(run: Run, seen: Seen) -> list[Finding]:
+    """What is above a lower limit, the worst of each kind for every line."""
     out: list[Finding] = []
     for index, line in enumerate(run.static.lines):
         of_line = Seen(*(part[..., index, :] for part in seen))
-        found = [*_kinks(line, of_line), *_blows(line, of_line)]
+        here = [*_kinks(line, of_line), *_blows(line, of_line)]
         if index in run.turned:  # the march counts it from its other end
-            found = [replace(one, place=line.length - one.place) for one in found]
-        out += [*found, *_reaches(run, line, of_line)]
-    for one in out:
-        if one.value > limits[one.what]:
-            raise NotConverged(
-                "time_domain", f"the step is too long: {one.sentence(run.time.h)}.",
-                "Use a smaller step, a softer seabed with a wider transition, or look for a line that snaps slack there.",
-            )  # fmt: skip
+            here = [replace(one, place=line.length - one.place) for one in here]
+        out += [*here, *_reaches(run, line, of_line)]
     return out
 
 

@@ -1,4 +1,4 @@
-"""Statistics of recorded histories: bands by FFT, standard deviations over seeds, first harmonics, spectra (R5-R8)."""
+"""Statistics of recorded histories: bands by FFT, standard deviations and their errors, first harmonics, spectra (R5-R9)."""
 
 from __future__ import annotations
 
@@ -14,6 +14,13 @@ def band_variances(history: Array, step: float, border: float, periodic: bool) -
 
     history : (n, …); step [s]; border [rad/s]. A record that is no whole period of its waves is tapered first.
     """
+    power, omega, mean = _periodogram(history, step, periodic)
+    low = (omega > 0) & (omega < border * (1 - 1e-9))
+    return power[low].sum(axis=0), power[omega >= border * (1 - 1e-9)].sum(axis=0), mean
+
+
+def _periodogram(history: Array, step: float, periodic: bool) -> tuple[Array, Array, Array]:
+    """Power (F, …) about the mean, its frequencies (F,) [rad/s] and the mean (…)."""
     n = history.shape[0]
     mean = history.mean(axis=0, dtype=float)
     window, gain = _window(n, periodic)
@@ -21,9 +28,21 @@ def band_variances(history: Array, step: float, border: float, periodic: bool) -
     power = np.abs(np.fft.rfft((history - mean) * window.reshape(shape), axis=0)) ** 2 * (2.0 / (n * n * gain))
     if n % 2 == 0:
         power[-1] *= 0.5
-    omega = 2 * np.pi * np.fft.rfftfreq(n, step)
-    low = (omega > 0) & (omega < border * (1 - 1e-9))
-    return power[low].sum(axis=0), power[omega >= border * (1 - 1e-9)].sum(axis=0), mean
+    return power, 2 * np.pi * np.fft.rfftfreq(n, step), mean
+
+
+def record_error(history: Array, step: float, border: float, periodic: bool) -> Array:
+    """Standard error of σ below the border as a share of it, from the records' own power alone (R9).
+
+    history : (n, …, seeds). Unlike the scatter of the seeds it is known for a single one. Zero where nothing moves.
+    """
+    power, omega, _ = _periodogram(history, step, periodic)
+    low = power[(omega > 0) & (omega < border * (1 - 1e-9))]
+    total, squares = low.sum(axis=(0, -1)), (low**2).sum(axis=(0, -1))
+    crowd = np.divide(squares, total**2, out=np.zeros_like(total), where=total > 0)  # about 2 / (lines that count + 1)
+    window, gain = _window(history.shape[0], periodic)
+    shorter = float(np.mean(window**4)) / gain**2
+    return 0.5 * np.sqrt(shorter * crowd / (2.0 - crowd))
 
 
 def _window(n: int, periodic: bool) -> tuple[Array, float]:

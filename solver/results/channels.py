@@ -137,6 +137,11 @@ def _of_origin(solved: Solved, spectra: Spectra | None, origin: str) -> Made:
     return spectra.second, (Axis("omega", "rad/s", solved.omega_low),)
 
 
+def _top_spectra(solved: Solved, name: str) -> Spectra:
+    """Spectra of tension of the element at end b."""
+    return solved.tension_spectra(solved.index(name), slice(-1, None))[-1]
+
+
 def _by_origin(origin: str, words: str) -> None:
     @channel("frequency", "vessel", f"{{dof}}_{origin}", "[x]2 s/rad", f"Spectrum of {{which}}, {words}")
     def _vessel(solved: Solved, dof: str) -> Made:
@@ -145,7 +150,7 @@ def _by_origin(origin: str, words: str) -> None:
 
     @channel("frequency", "line", f"top_tension_{origin}", "N2 s/rad", f"Spectrum of tension at end b, {words}")
     def _line(solved: Solved, name: str) -> Made:
-        return _of_origin(solved, solved.tension_spectra(solved.index(name))[-1], origin) if solved.is_random else None
+        return _of_origin(solved, _top_spectra(solved, name), origin) if solved.is_random else None
 
 
 _by_origin("first_order", "first-order response to the waves")
@@ -189,7 +194,7 @@ def _tension_spectrum(solved: Solved, name: str) -> Made:
 def _top_tension(solved: Solved, name: str) -> Made:
     if not solved.is_random:
         return None
-    return solved.total(solved.tension_spectra(solved.index(name))[-1]), (_omega(solved),)
+    return solved.total(_top_spectra(solved, name)), (_omega(solved),)
 
 
 def _tension_std(band: str, quantity: str, text: str) -> None:

@@ -140,11 +140,12 @@ class Solved:
         low = self.frequency.low
         return self.spectra(self.frequency.wave.vessel, low.vessel if low is not None else None)
 
-    def tension_spectra(self, index: int) -> Spectra:
-        """Spectra of tension of every element of a line, (N, …) [N² s/rad]."""
+    def tension_spectra(self, index: int, elements: slice = slice(None)) -> Spectra:
+        """Spectra of tension of the elements of a line, (N, …) [N² s/rad]."""
         assert self.frequency is not None
         low = self.frequency.low
-        return self.spectra(self.frequency.wave.tension[index], low.tension[index] if low is not None else None)
+        slow = low.tension[index][:, elements] if low is not None else None
+        return self.spectra(self.frequency.wave.tension[index][:, elements], slow)
 
     def end_spectra(self, index: int) -> Spectra:
         """Spectra of the forces at the ends of a line (rows END_FORCES), (4, …) [N² s/rad]."""

@@ -92,9 +92,13 @@ def test_a_storm_in_both_domains() -> None:
     assert summary["failures"] == {}
     time, frequency = summary["time_domain"], summary["frequency_domain"]
     for motion in ("surge", "heave", "pitch"):
-        assert frequency["vessel_std"]["wf"][motion] == pytest.approx(time["vessel_std"]["wf"][motion], rel=0.02)
-        low = frequency["same_waves"]["vessel_std"]["lf"][motion]
-        assert low == pytest.approx(time["vessel_std"]["lf"][motion], rel=0.2)
+        same = frequency["same_waves"]["vessel_std"]  # second order, which differs from seed to seed, is in both bands
+        assert same["wf"][motion] == pytest.approx(time["vessel_std"]["wf"][motion], rel=0.02)
+        assert same["lf"][motion] == pytest.approx(time["vessel_std"]["lf"][motion], rel=0.2)
+        first = frequency["origin_std"]["first_order"][motion]
+        assert first < time["vessel_std"]["wf"][motion] * 1.01
+    heave = frequency["origin_std"]["first_order"]["heave"]
+    assert time["vessel_std"]["wf"]["heave"] > 1.015 * heave  # 0.281 m of second order beside 1.287 m
     for line in ("head", "port", "starboard"):
         theirs = time["lines"][line]["tension_std"]["wf"][-1]
         assert frequency["lines"][line]["tension_std"]["wf"][-1] == pytest.approx(theirs, rel=0.1)

@@ -26,7 +26,19 @@ COMMANDS = {
 HIDDEN = {"api": "cli.api"}
 
 
+STOPPED = 130
+
+
 def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command; its exit status, 130 where Ctrl-C ends it."""
+    try:
+        return _run(argv)
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return STOPPED
+
+
+def _run(argv: Sequence[str] | None) -> int:
     arguments = list(sys.argv[1:] if argv is None else argv)
     asked = arguments[0] if arguments else ""
     parser = argparse.ArgumentParser(

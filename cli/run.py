@@ -4,37 +4,56 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import sys
-import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any
+
+from cli.files import write_whole
 
 if TYPE_CHECKING:
     from solver.case import Case
+    from solver.case.text import Reading
+    from solver.outcome import FieldError
     from solver.results.part import Result
+    from solver.vessel.data import DataSource
 
-DONE, WRONG, NOT_CONVERGED = 0, 2, 3
+    from .results import Wanted
+
+__all__ = ["DONE", "NOT_CONVERGED", "STOPPED", "WRONG", "write_whole"]
+
+DONE, WRONG, NOT_CONVERGED, STOPPED = 0, 2, 3, 130
+OVERRIDES = ("seeds", "duration")  # of analyses.time_domain
+TIME_DOMAIN = ("analyses", "time_domain")
+DESCRIPTION = """Solve a case (YAML or JSON). All faults of the case and its data are listed together, each with its line.
+Ctrl-C stops the run; the analyses that are done are written. Exit status: 0 done, 2 the case is wrong, 3 an analysis did
+not converge, 130 stopped by Ctrl-C."""
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the `run` command."""
     parser = subparsers.add_parser(
-        "run",
-        help="solve a case on this machine, without a server",
-        description="Solve a case (YAML or JSON). Exit status: 0 done, 2 the case is wrong, 3 an analysis did not converge.",
+        "run", help="solve a case on this machine, without a server", description=DESCRIPTION
     )
     parser.add_argument("case", type=Path, help="the case file; hydrodynamic data are found relative to it")
     parser.add_argument("--json", type=Path, metavar="OUT", help="write the summary here (docs/summary.md)")
     parser.add_argument(
-        "--out", type=Path, metavar="FILE", help="write the channels here: .nc, .csv or .parquet (docs/export.md)"
-    )
+        "--out", type=Path, metavar="FILE",
+        help="write results here (docs/export.md). The ending tells the format: channels as .nc, .h5, .csv or .parquet, "
+        "statistics tables as .xlsx",
+    )  # fmt: skip
+    parser.add_argument(
+        "--channels", metavar="PATTERN[,PATTERN]",
+        help="channels for --out: names, or patterns with *, e.g. 'time/vessel/*'; default: all (docs/summary.md lists them)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--layout", choices=("long", "wide"), default="long",
+        help="of a CSV file: a row for each value (long, the default), or the axis and then a column for each channel and "
+        "seed (wide; a file for each set of axes, e.g. results-time.csv)",
+    )  # fmt: skip
     parser.add_argument("--only", metavar="NAMES", help="analyses to run, e.g. frequency_domain,modes")
     parser.add_argument("--seeds", type=int, metavar="N", help="number of time-domain realisations")
     parser.add_argument("--duration", type=float, metavar="S", help="kept duration of the time domain [s]")
-    parser.add_argument("--quiet", action="store_true", help="no table and no progress")
+    parser.add_argument("--quiet", action="store_true", help="no table, no progress and no list of files")
     parser.set_defaults(func=command)
 
 
@@ -42,15 +61,9 @@ def command(args: argparse.Namespace) -> int:
     """Run the command; prints errors as sentences and returns the exit status."""
     from solver.outcome import CaseError, DataError
 
+    written: list[Path] = []
     try:
-        case, base = load(args)
-        kind = _format(args.out) if args.out else ""
-        result = _solve(case, base, quiet=args.quiet)
-        summary = result.summary
-        if args.json:
-            write_whole(args.json, json.dumps(summary, indent=1, allow_nan=False))
-        if args.out and result.channels:
-            _export(args.out, kind, case, result)
+        return _command(args, written)
     except CaseError as error:
         for item in error.errors:
             print(f"{args.case}: {item}", file=sys.stderr)
@@ -58,19 +71,100 @@ def command(args: argparse.Namespace) -> int:
     except DataError as error:
         print(f"{args.case}: {error}", file=sys.stderr)
         return WRONG
-    if not args.quiet:
-        from cli.table import show
+    except KeyboardInterrupt:
+        print(f"interrupted; {_listed(written)}", file=sys.stderr)
+        return STOPPED
 
+
+def _command(args: argparse.Namespace, written: list[Path]) -> int:
+    from rich.console import Console
+
+    from .results import write_results
+    from .solve import solve
+
+    case, wanted, source, doubts = _checked(args)
+    outcome = solve(case, source, doubts, Console(stderr=True), args.quiet)
+    notes: list[str] = []
+    if outcome.result is not None:
+        if args.json:
+            write_whole(args.json, json.dumps(outcome.result.summary, indent=1, allow_nan=False))
+            written.append(args.json)
+        if wanted is not None:
+            notes = write_results(wanted, case, outcome.result, written)
+    if outcome.interrupted:
+        print(_interrupted(case, outcome.result, written), file=sys.stderr)
+        if outcome.hung:
+            _leave(STOPPED)
+        return STOPPED
+    assert outcome.result is not None
+    return _tell(args, outcome.result.summary, notes, written)
+
+
+def _tell(args: argparse.Namespace, summary: dict[str, Any], notes: list[str], written: list[Path]) -> int:
+    from .files import size_of
+    from .table import show
+
+    if not args.quiet:
         show(summary)
+        for path in written:
+            print(f"{path}: {size_of(path)}")
+    for note in notes:
+        print(note, file=sys.stderr)
     for analysis, reason in summary["failures"].items():
         print(f"{analysis}: {reason}", file=sys.stderr)
     return NOT_CONVERGED if summary["failures"] else DONE
 
 
-def load(args: argparse.Namespace) -> tuple[Case, Path]:
-    """The case with the command line's overrides, and the folder its data are relative to."""
-    from solver.case import load_case, parse_case
-    from solver.case.text import MAX_BYTES
+def _interrupted(case: Case, result: Result | None, written: list[Path]) -> str:
+    asked = case.analyses.requested()
+    done = [name for name in asked if result is not None and name not in result.failures]
+    left = [name for name in asked if name not in done]
+    said = [f"done: {', '.join(done)}" if done else "no analysis was done"]
+    if done and left:
+        said.append(f"not done: {', '.join(left)}")
+    return "; ".join(["interrupted", *said, _listed(written)])
+
+
+def _listed(written: list[Path]) -> str:
+    return f"written: {', '.join(map(str, written))}" if written else "nothing was written"
+
+
+def _leave(status: int) -> None:
+    """End at once: a thread that still computes would be waited for."""
+    import os
+
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)
+
+
+def _checked(args: argparse.Namespace) -> tuple[Case, Wanted | None, DataSource, list[str]]:
+    """The case with the command line's changes, checked with its data, and the warnings. Raises CaseError with all faults."""
+    from solver.check import examine
+    from solver.outcome import CaseError
+    from solver.vessel.data import FileSource
+
+    from .results import wanted_of
+
+    reading, errors = _read(args)
+    source, wanted = FileSource(args.case.resolve().parent), None
+    warnings: list[str] = []
+    if reading.case is not None:
+        reading.case, wrong = _only(reading.case, args.only)
+        errors += wrong
+        found, warnings = examine(reading.case, source)
+        reading.add(found)
+    if args.out is not None or args.channels is not None or args.layout != "long":
+        wanted, wrong = wanted_of(args, reading.case)
+        errors += wrong
+    if errors:
+        raise CaseError([*errors, *sorted(reading.errors, key=lambda error: error.place)])
+    return reading.sound(), wanted, source, warnings
+
+
+def _read(args: argparse.Namespace) -> tuple[Reading, list[FieldError]]:
+    """The case file with --seeds and --duration, and the faults of these."""
+    from solver.case.text import MAX_BYTES, Reading, read_document
     from solver.outcome import CaseError, FieldError
 
     try:
@@ -78,99 +172,36 @@ def load(args: argparse.Namespace) -> tuple[Case, Path]:
             text = file.read(MAX_BYTES + 1)
     except OSError as error:
         raise CaseError([FieldError((), f"the case file cannot be read: {error.strerror}")]) from None
-    case = load_case(text)
-    overrides: dict[str, Any] = {}
-    for key in ("seeds", "duration"):
+    data, lines, repeated = read_document(text)
+    errors: list[FieldError] = []
+    analyses = data.get("analyses")
+    asked = analyses.get("time_domain") if isinstance(analyses, dict) else None
+    for key in OVERRIDES:
         value = getattr(args, key)
-        if value is not None:
-            if case.analyses.time_domain is None:
-                raise CaseError(
-                    [FieldError(("analyses", "time_domain"), f"--{key} belongs to the time domain, not asked for")]
-                )
-            overrides[key] = value
-    if overrides:
-        data = json.loads(case.canonical())
-        data["analyses"]["time_domain"].update(overrides)
-        case = parse_case(data)
-    if args.only is not None:
+        if value is None:
+            continue
+        if not isinstance(asked, dict):
+            errors.append(FieldError(TIME_DOMAIN, f"--{key} belongs to the time domain, not asked for"))
+            continue
+        asked[key] = value
+        lines.pop((*TIME_DOMAIN, key), None)
+    reading = Reading.of(data, lines, repeated)
+    given = {(*TIME_DOMAIN, key): f"--{key}" for key in OVERRIDES if getattr(args, key) is not None}
+    reading.errors = [
+        FieldError((given[item.loc],), item.message, item.value) if item.loc in given else item
+        for item in reading.errors
+    ]
+    return reading, errors
+
+
+def _only(case: Case, names: str | None) -> tuple[Case, list[FieldError]]:
+    """The case with the analyses that are named, and what is wrong with the names."""
+    from solver.case.partial import noted
+
+    errors: list[FieldError] = []
+    if names is not None:
         from solver.run import select
 
-        case = select(case, tuple(name.strip() for name in args.only.split(",")))
-    return case, args.case.resolve().parent
-
-
-def _solve(case: Case, base: Path, quiet: bool) -> Result:
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    from solver.check import check
-    from solver.vessel.data import FileSource
-
-    source = FileSource(base)
-    check(case, source)
-    console = Console(stderr=True)
-    if not quiet and console.is_terminal:
-        console.print("[dim]starting the solver (the first start compiles it, about a minute) …[/dim]")
-    from solver.run import run
-
-    columns = (
-        BarColumn(),
-        TextColumn("{task.percentage:>3.0f} %"),
-        TimeElapsedColumn(),
-        TextColumn("{task.description}"),
-    )
-    with Progress(*columns, console=console, disable=quiet or not console.is_terminal, transient=True) as bar:
-        task = bar.add_task("starting", total=1.0)
-        return run(case, source, lambda at: bar.update(task, completed=at.fraction, description=at.message))
-
-
-def _format(path: Path) -> str:
-    """The format of `--out`, known before the run starts. Raises CaseError, also where its library is missing."""
-    from importlib.util import find_spec
-
-    from solver.io.export import format_of
-    from solver.io.table import NO_PARQUET
-    from solver.outcome import CaseError, FieldError
-
-    kind = format_of(path.name)
-    if not path.absolute().parent.is_dir():
-        raise CaseError([FieldError(("out",), f"{path} cannot be written: there is no such folder")])
-    if kind == "parquet" and find_spec("pyarrow") is None:
-        raise CaseError([FieldError(("out",), NO_PARQUET, path.name)])
-    return kind
-
-
-def _export(path: Path, kind: str, case: Case, result: Result) -> None:
-    from solver.case import to_yaml
-    from solver.io.export import describe, write_results
-    from solver.io.selection import select_channels
-
-    channels = {channel.name: channel for channel in result.channels}
-    selection = select_channels({name: channel.dims for name, channel in channels.items()}, channels.__getitem__)
-    about = describe(result.summary, to_yaml(case), case.name)
-    with _whole(path) as file:
-        write_results(file, kind, selection, about)
-
-
-def write_whole(path: Path, text: str) -> None:
-    """Write a file so that it is there whole or not at all. Raises CaseError when it cannot be written."""
-    with _whole(path) as file:
-        file.write(text.encode())
-
-
-@contextmanager
-def _whole(path: Path) -> Iterator[IO[bytes]]:
-    from solver.outcome import CaseError, FieldError
-
-    try:
-        file = tempfile.NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}.", delete=False)  # noqa: SIM115 (kept)
-    except OSError as error:
-        raise CaseError([FieldError((), f"{path} cannot be written: {error.strerror}")]) from None
-    try:
-        with file:
-            yield file  # type: ignore[misc]
-        os.replace(file.name, path)
-    except OSError as error:
-        raise CaseError([FieldError((), f"{path} cannot be written: {error.strerror}")]) from None
-    finally:
-        Path(file.name).unlink(missing_ok=True)
+        with noted(errors):
+            case = select(case, tuple(name.strip() for name in names.split(",")))
+    return case, errors

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from .case import Case
-from .outcome import CaseError, DataError, FieldError
+from .case.partial import noted
+from .case.vessel import Hydrodynamics, WamitFiles
+from .outcome import CaseError, DataError, FieldError, Unread
 from .vessel.data import DataSource, HydrodynamicData, open_for
 from .vessel.fit import fit, lowest_wave
 from .vessel.rigid import buoyancy_minus_weight, hydrostatic_stiffness, mass_matrix, water_warnings
 from .waves.spectra import hs_in_band, significant_height
 from .waves.steepness import steepness_warnings
 
+DATA = ("vessel", "hydrodynamics", "data")
 IN_BAND = 0.97  # of Hs: below it the wave band is said to miss part of the sea
 
 
@@ -19,34 +25,92 @@ def check(case: Case, data: DataSource | None) -> list[str]:
     Raises CaseError naming each field at fault: data that are missing or unreadable, headings or frequencies outside
     them, drift or hydrostatics they do not hold.
     """
+    errors, warnings = examine(case, data)
+    if errors:
+        raise CaseError(errors)
+    return warnings
+
+
+def examine(case: Case, data: DataSource | None) -> tuple[list[FieldError], list[str]]:
+    """As `check`, for a case that may be read in part (case/partial.py): all faults, and the warnings."""
+    errors: list[FieldError] = []
     warnings: list[str] = []
-    if case.vessel is not None:
-        mass_matrix(case.vessel)
-        if case.vessel.hydrodynamics is not None:
-            hydro = _opened(case, data)
+    for look in (_vessel, _steepness, _bands):
+        try:
+            warnings += look(case, data, errors)
+        except Unread:
+            continue
+    return errors, warnings
+
+
+def _vessel(case: Case, data: DataSource | None, errors: list[FieldError]) -> list[str]:
+    """Warnings about the vessel and its data; faults go to `errors`."""
+    vessel = case.vessel
+    if vessel is None:
+        return []
+    warnings: list[str] = []
+    with _noted(errors):
+        mass_matrix(vessel)
+    hydro = None
+    if vessel.hydrodynamics is not None:
+        hydro = _opened(case, data, errors)
+        if hydro is None:
+            return warnings
+        with _noted(errors):
             warnings += [*fit(case, hydro), *water_warnings(hydro, case.environment, lowest_wave(case))]
-        else:
-            hydro = None
-        hydrostatic_stiffness(case.vessel, hydro)
-        if case.vessel.trim == "as_given":
-            buoyancy_minus_weight(case.vessel, hydro, case.environment)
-    return [*warnings, *steepness_warnings(case.environment), *_bands(case)]
+    with _noted(errors):
+        hydrostatic_stiffness(vessel, hydro)
+    with _noted(errors):
+        if vessel.trim == "as_given":
+            buoyancy_minus_weight(vessel, hydro, case.environment)
+    return warnings
 
 
-def _opened(case: Case, data: DataSource | None) -> HydrodynamicData:
-    loc = ("vessel", "hydrodynamics", "data")
+def _steepness(case: Case, _: DataSource | None, __: list[FieldError]) -> list[str]:
+    """Warnings about waves steeper than they can be."""
+    return steepness_warnings(case.environment)
+
+
+@contextmanager
+def _noted(errors: list[FieldError]) -> Iterator[None]:
+    """As `noted`; what is wrong with the data stands at the field that names them."""
+    with noted(errors):
+        try:
+            yield
+        except DataError as error:
+            raise CaseError([FieldError(DATA, str(error))]) from None
+
+
+def _opened(case: Case, data: DataSource | None, errors: list[FieldError]) -> HydrodynamicData | None:
+    """The vessel's data; None, with a fault, where they cannot be opened."""
     assert case.vessel is not None
     assert case.vessel.hydrodynamics is not None
-    reference = case.vessel.hydrodynamics.data
+    asked = case.vessel.hydrodynamics
     if data is None:
-        raise CaseError([FieldError(loc, "hydrodynamic data are referred to, but none can be opened here", reference)])
+        errors.append(FieldError(DATA, "hydrodynamic data are referred to, but none can be opened here", asked.data))
+        return None
     try:
-        return open_for(data, case.vessel.hydrodynamics, case.environment)
+        return open_for(data, asked, case.environment)
+    except Unread:
+        _opened_at_least(data, asked, errors)
     except DataError as error:
-        raise CaseError([FieldError(loc, str(error), reference)]) from None
+        errors.append(FieldError(DATA, str(error), asked.data))
+    return None
 
 
-def _bands(case: Case) -> list[str]:
+def _opened_at_least(data: DataSource, asked: Hydrodynamics, errors: list[FieldError]) -> None:
+    """Whether there are data to open, where the conventions or the water of WAMIT files could not be read."""
+    for conventions in (None, WamitFiles(values="dimensional")):
+        try:
+            data.open(asked.data, conventions)
+        except DataError as error:
+            fault = FieldError(DATA, str(error), asked.data)
+        else:
+            return
+    errors.append(fault)
+
+
+def _bands(case: Case, _: DataSource | None, __: list[FieldError]) -> list[str]:
     fd = case.analyses.frequency_domain
     warnings = []
     for sea in case.environment.random if fd is not None else ():

@@ -48,6 +48,11 @@ class FieldError:
         where = f" (line {self.line})" if self.line else ""
         return f"{self.field}{where}: {self.message}"
 
+    @property
+    def place(self) -> tuple[int, str]:
+        """Faults are listed by this: by line, those without one first, then by field."""
+        return self.line or 0, self.field
+
 
 class CaseError(SlowdriftError):
     """The case is wrong; `errors` names each field."""
@@ -55,6 +60,10 @@ class CaseError(SlowdriftError):
     def __init__(self, errors: list[FieldError]):
         self.errors = errors
         super().__init__("; ".join(str(error) for error in errors))
+
+
+class Unread(SlowdriftError):
+    """A field of a case that could not be read is asked for; a check that needs it cannot be made."""
 
 
 class DataError(SlowdriftError):
@@ -71,3 +80,7 @@ class NotConverged(SlowdriftError):
 
 class Cancelled(SlowdriftError):
     """The caller asked the run to stop."""
+
+
+class Interrupted(Cancelled):
+    """The caller asked the run to stop and wants the analyses that are done."""

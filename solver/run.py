@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -15,7 +16,7 @@ from .model.build import Model, build
 from .model.line import harmonic_omega
 from .modes.natural import longest_period
 from .modes.vessel import unreached_modes
-from .outcome import CaseError, FieldError, NotConverged
+from .outcome import CaseError, FieldError, Interrupted, NotConverged
 from .plan import plan
 from .results.channels import make_channels, make_time_channels
 from .results.doubt import add_doubtful
@@ -32,8 +33,11 @@ from .vessel.data import DataSource
 from .warm import warm_up, warm_up_time_domain
 
 __all__ = [
-    "check", "merge", "natural_modes", "plan", "run", "run_chunk", "select", "warm_up", "warm_up_time_domain",
+    "check", "collect", "merge", "natural_modes", "plan", "run", "run_chunk", "select", "warm_up", "warm_up_time_domain",
 ]  # fmt: skip
+
+LOADING = "loading compiled kernels (a first start compiles them, a minute or more)"
+INTERRUPTED = "interrupted before it was done; run the case again"
 
 
 def select(case: Case, analyses: tuple[str, ...]) -> Case:
@@ -50,24 +54,44 @@ def select(case: Case, analyses: tuple[str, ...]) -> Case:
 
 
 def run(
-    case: Case, data: DataSource | None, on_progress: OnProgress | None = None, threads: int | None = None
+    case: Case,
+    data: DataSource | None,
+    on_progress: OnProgress | None = None,
+    threads: int | None = None,
+    parts: list[Part] | None = None,
 ) -> Result:
-    """Check, plan and do everything here, time-domain seeds in `threads` (default: all cores). Raises as `check`."""
+    """Check, plan and do everything here, time-domain seeds in `threads` (default: all cores). Raises as `check`.
+
+    parts : a list that gets the part of each chunk as soon as it is done. When `on_progress` raises Interrupted, the
+    result holds the analyses that are done; the others are in its failures.
+    """
     doubts = check(case, data)
     chunks = plan(case)
     workers = threads or os.cpu_count() or 1
-    total, parts, before = sum(chunk.weight for chunk in chunks), [], 0.0
-    grouped = _together(chunks)
-    for chunk in grouped:
+    total, before = sum(chunk.weight for chunk in chunks), 0.0
+    done: list[Part] = [] if parts is None else parts
+    follow = on_progress or (lambda _progress: None)
+    try:
+        for chunk in _together(chunks):
 
-        def tell(progress: Progress, chunk: Chunk = chunk, before: float = before) -> None:
-            if on_progress is not None:
-                on_progress(Progress((before + progress.fraction * chunk.weight) / total, progress.message))
+            def tell(progress: Progress, chunk: Chunk = chunk, before: float = before) -> None:
+                with suppress(*([Interrupted] if progress.fraction >= 1.0 else [])):  # its part is done
+                    follow(Progress((before + progress.fraction * chunk.weight) / total, progress.message))
 
-        parts.append(run_chunk(case, data, chunk, None, tell, workers))
-        before += chunk.weight
+            done.append(run_chunk(case, data, chunk, None, tell, workers))
+            before += chunk.weight
+    except Interrupted:
+        pass
+    return collect(case, done, doubts)
+
+
+def collect(case: Case, parts: list[Part], doubts: list[str]) -> Result:
+    """One result of the parts that are done; an analysis without one is in `failures`. doubts : warnings of `check`."""
     result = merge(case, parts)
-    result.summary["warnings"] = list(dict.fromkeys([*doubts, *result.summary["warnings"]]))
+    summary = result.summary
+    summary["warnings"] = list(dict.fromkeys([*doubts, *summary["warnings"]]))
+    cut = [name for name in case.analyses.requested() if name not in summary and name not in summary["failures"]]
+    summary["failures"].update(dict.fromkeys(cut, INTERRUPTED))
     return result
 
 
@@ -95,7 +119,7 @@ def run_chunk(
     Raises CaseError and DataError when the question is wrong; whatever `on_progress` raises passes through.
     """
     tell = on_progress or (lambda _progress: None)
-    tell(Progress(0.0, "loading compiled kernels (a first start compiles them, a minute or more)"))
+    tell(Progress(0.0, LOADING))
     compile_time = warm_up() + (warm_up_time_domain() if chunk.kind == "time" else 0.0)
     asked = case.analyses.requested()
     model = build(case, data)
@@ -112,14 +136,26 @@ def run_chunk(
         static = replace(static, warnings=(*static.warnings, *unreached_modes(model, static)))
     if chunk.kind == "time":
         return _time_chunk(model, static, chunk, checkpoint, tell, threads, compile_time)
+    return _frequency_chunk(model, static, tell, compile_time)
+
+
+def _frequency_chunk(model: Model, static: StaticState, tell: OnProgress, compile_time: float) -> Part:
+    """All but the time domain; when it is interrupted, the analyses that are done."""
+    case, asked = model.case, model.case.analyses.requested()
     failures: dict[str, str] = {}
-    frequency = linear_analysis(model, static, asked, tell, failures)
-    modes = modes_analysis(model, static, frequency, asked, tell, failures)
-    tell(Progress(0.97, "collecting results"))
+    frequency, modes, stopped = None, None, False
+    try:
+        frequency = linear_analysis(model, static, asked, tell, failures)
+        modes = modes_analysis(model, static, frequency, asked, tell, failures)
+        tell(Progress(0.97, "collecting results"))
+    except Interrupted:
+        stopped = True
     shown = frequency if "frequency_domain" in asked else None
     solved = Solved(model, static if frequency is None else frequency.static, shown, modes, failures)
     summary = make_summary(solved, asked, compile_time)
-    if shown is not None and case.analyses.time_domain is not None and model.vessel is not None and solved.is_random:
+    compared = shown is not None and case.analyses.time_domain is not None and not stopped
+    if compared and model.vessel is not None and solved.is_random:
+        assert shown is not None
         summary["frequency_domain"]["same_waves"] = {"vessel_std": seeds_in_linear_system(model, static, shown)}
     part = Part(summary, tuple(make_channels(solved)))
     tell(Progress(1.0, "done"))

@@ -9,8 +9,9 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
-from solver.case import Case, load_case, parse_case, to_yaml
-from solver.case.text import MAX_BYTES, read_text
+from solver.case import Case, to_yaml
+from solver.case.partial import noted
+from solver.case.text import MAX_BYTES, Reading, read_case
 from solver.check import check
 from solver.outcome import CaseError, DataError, FieldError
 from store.effective import stored_case
@@ -51,19 +52,30 @@ def check_body(context: Context, scope: Scope, body: Body) -> Checked:
 def check_data(context: Context, scope: Scope, data: Any, size: int = 0) -> Checked:
     if size > MAX_BYTES:
         raise CaseError([FieldError((), f"the case has {size} bytes; allowed: at most {MAX_BYTES}")])
-    case = nameable(parse_case(data))
-    warnings, data_set_id = examine(context, scope, case)
+    reading = Reading.of(data)
+    warnings, data_set_id = _examined(context, scope, reading)
+    case = reading.sound()
     return Checked(case, to_yaml(case), warnings, data_set_id)
 
 
 def check_text(context: Context, scope: Scope, text: str | bytes) -> Checked:
-    case = load_case(text)
-    try:
-        nameable(case)
-        warnings, data_set_id = examine(context, scope, case)
-    except CaseError as error:
-        raise CaseError(_with_lines(error.errors, text)) from None
+    reading = read_case(text)
+    warnings, data_set_id = _examined(context, scope, reading)
+    case = reading.sound()
     return Checked(case, text if isinstance(text, str) else text.decode("utf-8-sig"), warnings, data_set_id)
+
+
+def _examined(context: Context, scope: Scope, reading: Reading) -> tuple[tuple[str, ...], str | None]:
+    """As `examine`, for a case that may have faults: those found here are added to the reading's."""
+    found: tuple[tuple[str, ...], str | None] = (), None
+    faults: list[FieldError] = []
+    if reading.case is not None:
+        with noted(faults):
+            nameable(reading.case)
+        with noted(faults):
+            found = examine(context, scope, reading.case)
+    reading.add(faults)
+    return found
 
 
 def nameable(case: Case) -> Case:
@@ -126,14 +138,3 @@ def saved(context: Context, scope: Scope, key: str) -> tuple[CaseVersion, Case]:
     with context.database.read() as session:
         version = CaseRepository(session, scope).get_with_text(key)
     return version, stored_case(version.canonical)
-
-
-def _with_lines(errors: list[FieldError], text: str | bytes) -> list[FieldError]:
-    _, lines = read_text(text)
-    placed = []
-    for error in errors:
-        loc = error.loc
-        while loc and loc not in lines:
-            loc = loc[:-1]
-        placed.append(FieldError(error.loc, error.message, error.value, error.line or lines.get(loc)))
-    return placed

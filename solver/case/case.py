@@ -11,10 +11,11 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, ValidationError
 
 from ..outcome import CaseError, FieldError
-from .analysis import Analyses
+from .analysis import Analyses, TimeDomain
 from .environment import Environment, RegularWave
 from .lines import Attachment as _Attachment
-from .lines import End, Line, LineType, Name
+from .lines import End, Line, LineType, Name, Segment
+from .partial import known, read_part
 from .quantities import Part
 from .vessel import Vessel
 
@@ -58,16 +59,32 @@ def parse_case(data: Any) -> Case:
 
     Raises CaseError naming every field at fault, with its value and the allowed range.
     """
-    try:
-        case = Case.model_validate(data)
-    except ValidationError as error:
-        raise CaseError(field_errors(error)) from None
-    except RecursionError:
-        raise CaseError([FieldError((), "the case is nested too deeply to be read")]) from None
-    errors = list(_cross_checks(case))
+    case, errors = examine_case(data)
     if errors:
         raise CaseError(errors)
+    assert case is not None
     return case
+
+
+def examine_case(data: Any) -> tuple[Case | None, list[FieldError]]:
+    """A case from plain dicts and lists, and all its faults: of its fields, and between them as far as they are known.
+
+    A field at fault is lacking from the case and raises Unread; there is no case where the data are no mapping.
+    """
+    try:
+        case: Case | None = Case.model_validate(data)
+        errors: list[FieldError] = []
+    except ValidationError as error:
+        errors = field_errors(error)
+        case, rules = read_part(Case, data) if isinstance(data, dict) else (None, [])
+        places = {item.loc for item in errors}
+        errors += [item for item in rules if item.loc not in places]
+    except RecursionError:
+        return None, [FieldError((), "the case is nested too deeply to be read")]
+    if case is not None:
+        places = {item.loc for item in errors}
+        errors += [item for item in _cross_checks(case) if item.loc not in places]
+    return case, errors
 
 
 def field_errors(error: ValidationError) -> list[FieldError]:
@@ -107,48 +124,68 @@ def _field_error(item: Any) -> FieldError:
 
 
 def _cross_checks(case: Case) -> Iterator[FieldError]:
-    yield from _whole(case)
-    for name, line in case.lines.items():
-        yield from _line(case, name, line)
-    yield from _attachments(case)
-    yield from _sea(case)
-    yield from _time_domain(case)
+    """Faults between fields; a check that needs a field which could not be read is left out."""
+    for check in (_whole, _vessel, _elements, _lines, _attachments, _breaking, _sea, _time_domain):
+        yield from known(check, case)
 
 
 def _whole(case: Case) -> Iterator[FieldError]:
     if case.vessel is None and not case.lines:
         yield FieldError((), "the case has neither a vessel nor lines; give at least one")
-    if case.vessel is not None:
-        vessel = case.vessel
-        if vessel.hydrodynamics is None and vessel.hydrostatics.stiffness is None:
-            yield FieldError(
-                ("vessel", "hydrodynamics"),
-                "a vessel needs hydrodynamic data, or at least hydrostatics.stiffness to hold it in heave, roll and pitch",
-            )
-        if vessel.hydrodynamics is None and case.environment.seastates:
-            yield FieldError(("vessel", "hydrodynamics"), "waves act on the vessel only through hydrodynamic data")
+
+
+def _vessel(case: Case) -> Iterator[FieldError]:
+    vessel = case.vessel
+    if vessel is None or vessel.hydrodynamics is not None:
+        return
+    loc = ("vessel", "hydrodynamics")
+    if vessel.hydrostatics.stiffness is None:
+        yield FieldError(
+            loc,
+            "a vessel needs hydrodynamic data, or at least hydrostatics.stiffness to hold it in heave, roll and pitch",
+        )
+    elif case.environment.seastates:
+        yield FieldError(loc, "waves act on the vessel only through hydrodynamic data")
+
+
+def _elements(case: Case) -> Iterator[FieldError]:
     elements = sum(segment.elements or 0 for line in case.lines.values() for segment in line.segments)
     if elements > MAX_ELEMENTS:
         yield FieldError(("lines",), f"{elements} elements in all; allowed: at most {MAX_ELEMENTS}")
 
 
-def _line(case: Case, name: str, line: Line) -> Iterator[FieldError]:
-    loc = ("lines", name)
+def _lines(case: Case) -> Iterator[FieldError]:
+    for name, line in case.lines.items():
+        yield from known(_segments, case, ("lines", name), line)
+        for end_name in ("end_a", "end_b"):
+            yield from known(_fairlead, case, ("lines", name, end_name), line, end_name)
+            yield from known(_depth_of_end, case, ("lines", name, end_name), line, end_name)
+        yield from known(_reach, case, ("lines", name), line)
+
+
+def _segments(case: Case, loc: tuple[str | int, ...], line: Line) -> Iterator[FieldError]:
     for index, segment in enumerate(line.segments):
-        if segment.type not in case.line_types:
-            known = ", ".join(case.line_types) or "none"
-            yield FieldError(
-                (*loc, "segments", index, "type"), f"no line type {segment.type!r}; known: {known}", segment.type
-            )
-        if segment.element_length is not None and segment.length != "find":
-            count = math.ceil(segment.length / segment.element_length)
-            if count > 5000:
-                yield FieldError(
-                    (*loc, "segments", index, "element_length"), f"gives {count} elements; allowed: ≤ 5000"
-                )
-    for end_name in ("end_a", "end_b"):
-        yield from _end(case, (*loc, end_name), getattr(line, end_name))
+        yield from known(_type, case, (*loc, "segments", index, "type"), segment)
+        yield from known(_count, (*loc, "segments", index, "element_length"), segment)
+
+
+def _type(case: Case, loc: tuple[str | int, ...], segment: Segment) -> Iterator[FieldError]:
+    if segment.type not in case.line_types:
+        there = ", ".join(case.line_types) or "none"
+        yield FieldError(loc, f"no line type {segment.type!r}; known: {there}", segment.type)
+
+
+def _count(loc: tuple[str | int, ...], segment: Segment) -> Iterator[FieldError]:
+    if segment.element_length is not None and segment.length != "find":
+        count = math.ceil(segment.length / segment.element_length)
+        if count > 5000:
+            yield FieldError(loc, f"gives {count} elements; allowed: ≤ 5000")
+
+
+def _reach(case: Case, loc: tuple[str | int, ...], line: Line) -> Iterator[FieldError]:
     a, b = end_point(case, line.end_a), end_point(case, line.end_b)
+    if a is not None and a == b:
+        yield FieldError(loc, "both ends are at the same point")
     if a is not None and b is not None and line.length is not None and not line.allow_stretch:
         distance = math.dist(a, b)
         if distance >= line.length:
@@ -158,14 +195,16 @@ def _line(case: Case, name: str, line: Line) -> Iterator[FieldError]:
                 f"allowed: longer than {distance:.6g} m, or allow_stretch: true",
                 f"{line.length:g}",
             )
-    if a is not None and a == b:
-        yield FieldError(loc, "both ends are at the same point")
 
 
-def _end(case: Case, loc: tuple[str | int, ...], end: End) -> Iterator[FieldError]:
-    depth = case.environment.depth
-    if end.fairlead is not None and case.vessel is None:
+def _fairlead(case: Case, loc: tuple[str | int, ...], line: Line, end_name: str) -> Iterator[FieldError]:
+    if getattr(line, end_name).fairlead is not None and case.vessel is None:
         yield FieldError((*loc, "fairlead"), "the case has no vessel to carry a fairlead; use pinned")
+
+
+def _depth_of_end(case: Case, loc: tuple[str | int, ...], line: Line, end_name: str) -> Iterator[FieldError]:
+    end: End = getattr(line, end_name)
+    depth = case.environment.depth
     if end.pinned is not None and end.pinned[2] < -depth - 1e-6:
         yield FieldError((*loc, "pinned", 2), f"{end.pinned[2]:g} m is below the seabed; allowed: ≥ {-depth:g}")
     if end.anchor is not None and end.anchor.point is not None and len(end.anchor.point) == 3:
@@ -190,16 +229,20 @@ def end_point(case: Case, end: End) -> tuple[float, float, float] | None:
 
 def _attachments(case: Case) -> Iterator[FieldError]:
     for index, item in enumerate(case.attachments):
-        line = case.lines.get(item.line)
-        if line is None:
-            known = ", ".join(case.lines) or "none"
-            yield FieldError(("attachments", index, "line"), f"no line {item.line!r}; known: {known}", item.line)
-        elif line.length is not None and not 0 < item.arc_length < line.length:
-            yield FieldError(
-                ("attachments", index, "arc_length"),
-                f"{item.arc_length:g} m is not inside the line; allowed: between 0 and {line.length:g} m, ends excluded",
-                f"{item.arc_length:g}",
-            )
+        yield from known(_attachment, case, ("attachments", index), item)
+
+
+def _attachment(case: Case, loc: tuple[str | int, ...], item: _Attachment) -> Iterator[FieldError]:
+    line = case.lines.get(item.line)
+    if line is None:
+        there = ", ".join(case.lines) or "none"
+        yield FieldError((*loc, "line"), f"no line {item.line!r}; known: {there}", item.line)
+    elif line.length is not None and not 0 < item.arc_length < line.length:
+        yield FieldError(
+            (*loc, "arc_length"),
+            f"{item.arc_length:g} m is not inside the line; allowed: between 0 and {line.length:g} m, ends excluded",
+            f"{item.arc_length:g}",
+        )
 
 
 def harmonic_frequencies(case: Case) -> list[tuple[tuple[str | int, ...], float]]:
@@ -217,19 +260,28 @@ def harmonic_frequencies(case: Case) -> list[tuple[tuple[str | int, ...], float]
     return found
 
 
-def _sea(case: Case) -> Iterator[FieldError]:
-    frequency_domain = case.analyses.frequency_domain
-    harmonics = harmonic_frequencies(case)
+def _breaking(case: Case) -> Iterator[FieldError]:
     for index, sea in enumerate(case.environment.seastates):
-        if isinstance(sea, RegularWave) and sea.height > 0.142 * 1.5613 * sea.period**2:
-            limit = 0.142 * 1.5613 * sea.period**2
-            yield FieldError(
-                ("environment", "seastates", index, "height"),
-                f"{sea.height:g} m breaks at a period of {sea.period:g} s; allowed: below {limit:.3g} m",
-                f"{sea.height:g}",
-            )
+        if isinstance(sea, RegularWave):
+            yield from known(_breaks, ("environment", "seastates", index, "height"), sea)
+
+
+def _breaks(loc: tuple[str | int, ...], sea: RegularWave) -> Iterator[FieldError]:
+    limit = 0.142 * 1.5613 * sea.period**2
+    if sea.height > limit:
+        yield FieldError(
+            loc,
+            f"{sea.height:g} m breaks at a period of {sea.period:g} s; allowed: below {limit:.3g} m",
+            f"{sea.height:g}",
+        )
+
+
+def _sea(case: Case) -> Iterator[FieldError]:
+    """What the frequency domain does not take."""
+    frequency_domain = case.analyses.frequency_domain
     if frequency_domain is None:
         return
+    harmonics = harmonic_frequencies(case)
     if harmonics and case.environment.random:
         yield FieldError(
             harmonics[0][0][:-1],
@@ -257,6 +309,13 @@ def _time_domain(case: Case) -> Iterator[FieldError]:
     if spec is None:
         return
     loc = ("analyses", "time_domain")
+    for check in (_output_step, _duration, _steps, _stored):
+        yield from known(check, loc, spec)
+    for about in (_has_lines, _fairleads, _one_period):
+        yield from known(about, case)
+
+
+def _output_step(loc: tuple[str, ...], spec: TimeDomain) -> Iterator[FieldError]:
     every = round(spec.output_step / spec.step)
     if every < 1 or abs(every * spec.step - spec.output_step) > 1e-6 * spec.output_step:
         yield FieldError(
@@ -264,33 +323,53 @@ def _time_domain(case: Case) -> Iterator[FieldError]:
             f"{spec.output_step:g} s is no multiple of the step; allowed: {spec.step:g}, {2 * spec.step:g}, … s",
             f"{spec.output_step:g}",
         )
+
+
+def _duration(loc: tuple[str, ...], spec: TimeDomain) -> Iterator[FieldError]:
     if spec.duration < spec.output_step:
         yield FieldError(
             (*loc, "duration"), f"{spec.duration:g} s is shorter than output_step; allowed: ≥ {spec.output_step:g}"
         )
-    if not case.lines:
-        yield FieldError(loc, "the time domain needs at least one line")
-    for name, line in case.lines.items():
-        if line.end_a.fairlead is not None and line.end_b.fairlead is not None:
-            yield FieldError(
-                ("lines", name, "end_a", "fairlead"), "the time domain takes a fairlead at one end of a line only"
-            )
-    waves = [sea.period for sea in case.environment.regular]
-    motions = [item for item in harmonic_frequencies(case) if item[0][0] == "lines"]
-    if waves and max(waves) - min(waves) > 1e-9 * max(waves):
-        yield FieldError(("environment", "seastates"), "the time domain takes regular waves of one period")
-    for where, omega in motions[1:]:
-        if abs(omega - motions[0][1]) > 1e-9 * omega:
-            yield FieldError(
-                where,
-                f"the time domain takes one period for all motions; the first has {2 * math.pi / motions[0][1]:g} s",
-            )
+
+
+def _steps(loc: tuple[str, ...], spec: TimeDomain) -> Iterator[FieldError]:
     steps = spec.seeds * (spec.build_up + spec.duration) / spec.step
     if steps > 1e10:
         yield FieldError(loc, f"{steps:.2g} steps over all seeds; allowed: at most 1e10")
+
+
+def _stored(loc: tuple[str, ...], spec: TimeDomain) -> Iterator[FieldError]:
     stored = spec.duration / spec.output_step
     if stored > 2e6:
         yield FieldError(
             (*loc, "output_step"),
             f"{stored:.3g} values of every history; allowed: at most 2e6, use a longer output_step",
         )
+
+
+def _has_lines(case: Case) -> Iterator[FieldError]:
+    if not case.lines:
+        yield FieldError(("analyses", "time_domain"), "the time domain needs at least one line")
+
+
+def _fairleads(case: Case) -> Iterator[FieldError]:
+    for name, line in case.lines.items():
+        yield from known(_one_fairlead, ("lines", name, "end_a", "fairlead"), line)
+
+
+def _one_fairlead(loc: tuple[str, ...], line: Line) -> Iterator[FieldError]:
+    if line.end_a.fairlead is not None and line.end_b.fairlead is not None:
+        yield FieldError(loc, "the time domain takes a fairlead at one end of a line only")
+
+
+def _one_period(case: Case) -> Iterator[FieldError]:
+    waves = [sea.period for sea in case.environment.regular]
+    if waves and max(waves) - min(waves) > 1e-9 * max(waves):
+        yield FieldError(("environment", "seastates"), "the time domain takes regular waves of one period")
+    motions = [item for item in harmonic_frequencies(case) if item[0][0] == "lines"]
+    for where, omega in motions[1:]:
+        if abs(omega - motions[0][1]) > 1e-9 * omega:
+            yield FieldError(
+                where,
+                f"the time domain takes one period for all motions; the first has {2 * math.pi / motions[0][1]:g} s",
+            )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer, WithJsonSchema
 
+from ..outcome import Unread
 from .units import UNITS, parse
 
 
@@ -22,6 +23,14 @@ class Part(BaseModel):
         validate_by_name=True,
         validate_by_alias=True,
     )
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """Called for what an instance lacks: a field is lacking only where a part was read in part (partial.py)."""
+            if name in type(self).model_fields:
+                raise Unread(name)
+            return super().__getattr__(name)
 
 
 def _schema(dimension: str) -> dict[str, Any]:

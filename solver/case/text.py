@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import yaml
 
 from ..outcome import CaseError, FieldError
-from .case import Case, parse_case
+from .case import Case, examine_case
 
 MAX_BYTES = 1_000_000
 MAX_NODES = 200_000
@@ -54,20 +56,59 @@ _Loader.add_constructor("tag:yaml.org,2002:int", _int)
 _Loader.add_constructor("tag:yaml.org,2002:float", _float)
 
 
+Loc = tuple[str | int, ...]
+
+
+@dataclass
+class Reading:
+    """What a text says: the case, the fields at fault lacking (partial.py), the faults, and the line of every path."""
+
+    case: Case | None
+    errors: list[FieldError]
+    lines: Mapping[Loc, int]
+
+    @classmethod
+    def of(cls, data: Any, lines: Mapping[Loc, int] | None = None, errors: Iterable[FieldError] = ()) -> Reading:
+        """Of plain data. lines : line of every path, where there is a text; errors : faults known already."""
+        case, found = examine_case(data)
+        reading = cls(case, [], lines or {})
+        reading.add([*errors, *found])
+        return reading
+
+    def add(self, errors: Iterable[FieldError]) -> None:
+        """Add faults, each with its line."""
+        self.errors += [error if error.line else with_line(error, self.lines) for error in errors]
+
+    def sound(self) -> Case:
+        """The case. Raises CaseError with every fault, by line."""
+        if self.errors or self.case is None:
+            raise CaseError(sorted(self.errors, key=lambda error: error.place))
+        return self.case
+
+
 def load_case(text: str | bytes) -> Case:
     """A checked case from YAML or JSON text (JSON is read as the YAML it is).
 
     Raises CaseError; each error carries the line of its field in the text.
     """
-    data, lines = read_text(text)
-    try:
-        return parse_case(data)
-    except CaseError as error:
-        raise CaseError([with_line(item, lines) for item in error.errors]) from None
+    return read_case(text).sound()
 
 
-def read_text(text: str | bytes) -> tuple[Any, dict[tuple[str | int, ...], int]]:
-    """Plain data and the line number of every path, from YAML or JSON text."""
+def read_case(text: str | bytes) -> Reading:
+    """A case and all its faults from YAML or JSON text. Raises CaseError for a text that cannot be read as such."""
+    return Reading.of(*read_document(text))
+
+
+def read_text(text: str | bytes) -> tuple[Any, dict[Loc, int]]:
+    """Plain data and the line number of every path, from YAML or JSON text. Raises CaseError."""
+    data, lines, repeated = read_document(text)
+    if repeated:
+        raise CaseError(repeated)
+    return data, lines
+
+
+def read_document(text: str | bytes) -> tuple[Any, dict[Loc, int], list[FieldError]]:
+    """As `read_text`, with a fault for each key that is given twice, of which the data hold the last."""
     if len(text) > MAX_BYTES:
         raise CaseError([FieldError((), f"the text has {len(text)} bytes; allowed: at most {MAX_BYTES}")])
     try:
@@ -77,8 +118,8 @@ def read_text(text: str | bytes) -> tuple[Any, dict[tuple[str | int, ...], int]]
         raise CaseError([FieldError((), f"the text is not UTF-8: {reason} at byte {at}")]) from None
     try:
         root = _compose(text)
-        lines = _walk(root)
-        return _construct(root), lines
+        lines, repeated = _walk(root)
+        return _construct(root), lines, repeated
     except yaml.YAMLError as error:
         mark = error.problem_mark if isinstance(error, yaml.MarkedYAMLError) else None
         problem = getattr(error, "problem", None) or str(error).splitlines()[0]
@@ -122,33 +163,33 @@ def _construct(root: yaml.Node) -> Any:
         loader.dispose()
 
 
-def _walk(root: yaml.Node) -> dict[tuple[str | int, ...], int]:
-    """Line of every path; refuses repeated keys and expansion beyond MAX_NODES."""
-    lines: dict[tuple[str | int, ...], int] = {}
-    stack: list[tuple[tuple[str | int, ...], yaml.Node]] = [((), root)]
+def _walk(root: yaml.Node) -> tuple[dict[Loc, int], list[FieldError]]:
+    """Line of every path, that of its key where it has one, and repeated keys; refuses expansion beyond MAX_NODES."""
+    lines: dict[Loc, int] = {}
+    repeated: list[FieldError] = []
+    stack: list[tuple[Loc, yaml.Node, int]] = [((), root, root.start_mark.line + 1)]
     count = 0
     while stack:
-        loc, node = stack.pop()
+        loc, node, line = stack.pop()
         count += 1
         if count > MAX_NODES or len(loc) > MAX_DEPTH:
             raise CaseError(
                 [FieldError((), f"expands to more than {MAX_NODES} values or {MAX_DEPTH} levels (aliases?)")]
             )
-        lines[loc] = node.start_mark.line + 1
+        lines[loc] = line
         _plain(loc, node)
         if isinstance(node, yaml.MappingNode):
-            seen: set[str] = set()
+            values: dict[str, tuple[yaml.Node, int]] = {}
             for key, value in node.value:
                 _plain(loc, key, is_key=True)
-                name = str(key.value)
-                if name in seen:
-                    line = key.start_mark.line + 1
-                    raise CaseError([FieldError((*loc, name), "this key is given twice", line=line)])
-                seen.add(name)
-                stack.append(((*loc, name), value))
+                name, line = str(key.value), key.start_mark.line + 1
+                if name in values:
+                    repeated.append(FieldError((*loc, name), "this key is given twice", line=line))
+                values[name] = value, line
+            stack.extend(((*loc, name), value, line) for name, (value, line) in values.items())
         elif isinstance(node, yaml.SequenceNode):
-            stack.extend(((*loc, index), value) for index, value in enumerate(node.value))
-    return lines
+            stack.extend(((*loc, index), value, value.start_mark.line + 1) for index, value in enumerate(node.value))
+    return lines, repeated
 
 
 def _plain(loc: tuple[str | int, ...], node: yaml.Node, is_key: bool = False) -> None:
@@ -169,7 +210,7 @@ def _plain(loc: tuple[str | int, ...], node: yaml.Node, is_key: bool = False) ->
         )
 
 
-def with_line(error: FieldError, lines: dict[tuple[str | int, ...], int]) -> FieldError:
+def with_line(error: FieldError, lines: Mapping[Loc, int]) -> FieldError:
     """The error with the line of its field, or of what holds it."""
     loc = error.loc
     while loc and loc not in lines:

@@ -12,17 +12,17 @@ from .netcdf import write_netcdf
 from .selection import Selection
 from .table import write_csv, write_parquet
 
-ENDINGS = {".nc": "netcdf", ".h5": "netcdf", ".csv": "csv", ".parquet": "parquet"}
+ENDINGS = {".nc": "netcdf", ".h5": "netcdf", ".csv": "csv", ".parquet": "parquet", ".xlsx": "xlsx"}
 FORMATS = {"netcdf": ".nc", "csv": ".csv", "parquet": ".parquet"}
 
 
 def format_of(name: str) -> str:
-    """The format that a file's name asks for. Raises CaseError."""
+    """The format that a file's name asks for: one of FORMATS, or xlsx (workbook.py). Raises CaseError."""
     for ending, kind in ENDINGS.items():
         if name.lower().endswith(ending):
             return kind
     message = f"{name[-60:]}: the format is told by the ending; allowed: {', '.join(ENDINGS)}"
-    raise CaseError([FieldError(("out",), message, name[-60:])])
+    raise CaseError([FieldError(("--out",), message, name[-60:])])
 
 
 def write_results(

@@ -40,7 +40,7 @@ def _long(writer: Any, selection: Selection) -> None:
         for columns, values in _blocks(channel):
             shown = [columns[axis] if axis in columns else [""] * len(values) for axis in axes]
             name, unit = [channel.name] * len(values), [channel.unit] * len(values)
-            writer.writerows(zip(name, unit, *shown, _text(values), strict=True))
+            writer.writerows(zip(name, unit, *shown, text_of(values), strict=True))
 
 
 def _blocks(channel: Channel) -> Iterator[tuple[dict[str, list[Any]], np.ndarray]]:
@@ -57,7 +57,7 @@ def _blocks(channel: Channel) -> Iterator[tuple[dict[str, list[Any]], np.ndarray
         yield columns, flat[rows]
 
 
-def _text(values: np.ndarray) -> list[str]:
+def text_of(values: np.ndarray) -> list[str]:
     """Shortest decimals that give back the same number."""
     return (
         [str(value) for value in values] if values.dtype == np.float32 else [repr(value) for value in values.tolist()]
@@ -74,7 +74,7 @@ def _wide(writer: Any, selection: Selection) -> None:
                 f"more than {MAX_WIDE} values in one wide table; choose fewer channels or one seed, or take layout long"
             )
             raise CaseError([FieldError(("layout",), message, "wide")])
-        if channels and not _same_axes(channels[0].axes, channel.axes):
+        if channels and not same_axes(channels[0].axes, channel.axes):
             message = (
                 f"{channel.name} is not on the axes of {channels[0].name} ({', '.join(channels[0].dims)}); "
                 "a wide table needs the same axes: choose other channels, or take layout long"
@@ -87,10 +87,10 @@ def _wide(writer: Any, selection: Selection) -> None:
     writer.writerow([*head, *(f"{channel.name} [{channel.unit}]" for channel in channels)])
     streams = [_blocks(channel) for channel in channels]
     for parts in zip(*streams, strict=True):
-        writer.writerows(zip(*parts[0][0].values(), *(_text(values) for _, values in parts), strict=True))
+        writer.writerows(zip(*parts[0][0].values(), *(text_of(values) for _, values in parts), strict=True))
 
 
-def _same_axes(one: tuple[Axis, ...], two: tuple[Axis, ...]) -> bool:
+def same_axes(one: tuple[Axis, ...], two: tuple[Axis, ...]) -> bool:
     return len(one) == len(two) and all(
         a.name == b.name and np.array_equal(a.values, b.values) for a, b in zip(one, two, strict=True)
     )

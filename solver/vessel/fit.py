@@ -10,6 +10,7 @@ import numpy as np
 from ..case import Case, harmonic_frequencies
 from ..case.analysis import FrequencyDomain
 from ..case.environment import RegularWave
+from ..case.partial import known
 from ..case.vessel import Hydrodynamics
 from ..outcome import CaseError, DataError, FieldError
 from ..waves.spectra import hs_in_band, significant_height
@@ -30,15 +31,15 @@ def fit(case: Case, data: HydrodynamicData) -> tuple[str, ...]:
     assert case.vessel is not None
     choice = case.vessel.hydrodynamics
     assert choice is not None
-    low, high = _band(case)
     errors = [
-        *_frequencies(case, choice, data),
-        *_drift(choice, data),
-        *_pairs(case, choice, data, high),
-        *_directions(case, choice, data, low),
+        *known(_frequencies, case, choice, data),
+        *known(_drift, choice, data),
+        *known(lambda: _pairs(case, choice, data, _band(case)[1])),
+        *known(lambda: _directions(case, choice, data, _band(case)[0])),
     ]
     if errors:
         raise CaseError(errors)
+    low, high = _band(case)
     headings = [float(sea.direction) - float(case.vessel.heading) for sea in case.environment.seastates]
     doubts = (
         *_below_the_data(case, data, low), *_below_the_pairs(case, choice, data, low),

@@ -91,6 +91,33 @@ def test_a_faulty_field_is_named(client: TestClient, riser: str, path: str, valu
 
 
 @pytest.mark.usefixtures("untouched")
+def test_all_faults_of_a_case_and_its_data_come_together(client: TestClient, fpso: str) -> None:
+    """Of fields, between fields, of names that the database cannot show, and of data that are not here."""
+    line = next(iter(yaml.safe_load(fpso)["lines"]))
+    text = changed(fpso, "environment.depth", -5)
+    text = changed(text, f"lines.{line}.segments.0.type", "rope")
+    text = changed(text, "attachments", [{"line": "bough", "arc_length": 3}])
+    text = changed(text, "name", "a\x07bell")
+    wrong = {
+        "environment.depth",
+        f"lines.{line}.segments.0.type",
+        "attachments.0.line",
+        "name",
+        "vessel.hydrodynamics.data",
+    }
+    for answer in submit_everywhere(client, text):
+        assert_refused(answer, "depth")
+        errors = answer.json()["errors"]
+        assert {error["field"] for error in errors} == wrong
+        assert [error["line"] for error in errors] == sorted(error["line"] for error in errors)
+        assert all(error["line"] for error in errors)
+    kind = {"content-type": "application/json"}
+    for route in ("cases", "preview"):
+        answer = client.post(f"/api/v1/{route}", content=json.dumps(yaml.safe_load(text)), headers=kind)
+        assert {error["field"] for error in answer.json()["errors"]} == wrong
+
+
+@pytest.mark.usefixtures("untouched")
 def test_missing_hydrodynamic_data(client: TestClient, fpso: str) -> None:
     for answer in submit_everywhere(client, fpso):
         assert_refused(answer, "vessel.hydrodynamics.data", "upload it")

@@ -27,6 +27,17 @@ def test_help_names_the_commands(tmp_path: Path) -> None:
     assert "{api" not in done.stdout
 
 
+def test_help_of_run_explains_every_option_and_status(tmp_path: Path) -> None:
+    text = " ".join(slowdrift(tmp_path, "run", "--help").stdout.split())
+    options = ("--json", "--out", "--channels", "--layout", "--only", "--seeds", "--duration", "--quiet")
+    for option in options:
+        assert text.count(option) >= 2, option  # in the usage and with its help
+    for ending in (".nc", ".h5", ".csv", ".parquet", ".xlsx"):
+        assert ending in text
+    for status in ("0 done", "2 the case is wrong", "3 an analysis did not converge", "130 stopped"):
+        assert status in text
+
+
 def test_other_machines_are_refused_without_accounts(tmp_path: Path) -> None:
     done = slowdrift(tmp_path, "serve", "--host", "0.0.0.0", "--port", "0")
     assert done.returncode == 2

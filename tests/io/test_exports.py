@@ -156,6 +156,6 @@ def test_a_wide_table_is_bounded_and_one_channel_at_a_time_is_loaded(monkeypatch
 def test_nothing_to_write_and_unknown_endings_are_refused() -> None:
     with pytest.raises(CaseError, match="no channels"):
         write_results(io.BytesIO(), "csv", select_channels({}, made().__getitem__), ABOUT)
-    with pytest.raises(CaseError, match=r"allowed: \.nc, \.h5, \.csv, \.parquet"):
-        format_of("results.xlsx")
+    with pytest.raises(CaseError, match=r"allowed: \.nc, \.h5, \.csv, \.parquet, \.xlsx"):
+        format_of("results.xls")
     assert format_of("A.B.NC") == "netcdf"

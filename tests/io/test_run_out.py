@@ -37,7 +37,7 @@ def test_the_file_holds_channels_case_and_summary(netcdf: Path) -> None:
 
 def test_a_wrong_ending_or_folder_is_told_before_the_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     case = str(ROOT / "examples" / "hanging-riser-case1.yaml")
-    assert main(["run", case, "--quiet", "--out", str(tmp_path / "results.xlsx")]) == 2
+    assert main(["run", case, "--quiet", "--out", str(tmp_path / "results.xls")]) == 2
     assert "allowed: .nc" in capsys.readouterr().err
     assert main(["run", case, "--quiet", "--out", str(tmp_path / "none" / "results.nc")]) == 2
     assert "no such folder" in capsys.readouterr().err

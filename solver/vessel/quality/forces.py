@@ -66,7 +66,7 @@ def _haskind(data: HydrodynamicData) -> Check:
         f"{whole[w, i]:.4g} from the wave forces: {percent(gap[w, i])} of the peak (threshold {percent(HASKIND)})"
     )
     bad = (
-        f"{data.name}: {text}; check ULEN, density and gravity, whether periods or frequencies are listed, "
+        f"{data.name}: {text}; check ULEN, density and gravity, whether periods, frequencies or wave numbers are listed, "
         f"and the reference point; or refine the mesh"
     )
     return judge("haskind", float(gap[w, i]), HASKIND, f"{data.name}: {text}", bad)

@@ -211,7 +211,8 @@ def _compare_haskind(
         found.warnings.append(f"{table.name}: its headings are not those of the .3 file; it is not compared")
         return
     peak = np.abs(excitation).max(axis=(0, 1))
-    share = np.abs(other - excitation).max(axis=(0, 1)) / np.maximum(peak, 1e-6 * peak.max())
+    scale = np.maximum(peak, 0.01 * np.repeat(peak.reshape(2, 3).max(axis=1), 3))
+    share = np.abs(other - excitation).max(axis=(0, 1)) / np.maximum(scale, 1e-6 * peak.max())
     if share.max() > DIFFERENT:
         found.warnings.append(
             f"{table.name}: forces by Haskind's relation differ from those by diffraction by up to "

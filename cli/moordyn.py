@@ -25,7 +25,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     ways = parser.add_subparsers(dest="way", metavar="read|write", required=True)
     read = ways.add_parser("read", help="a deck (v1 or v2) to a case in YAML")
     read.add_argument("source", type=Path, metavar="DECK")
-    read.add_argument("--vessel", type=Path, metavar="CASE", help="a case whose vessel, sea and analyses are kept")
+    held = read.add_mutually_exclusive_group()
+    held.add_argument("--vessel", type=Path, metavar="CASE", help="a case whose vessel, sea and analyses are kept")
+    held.add_argument(
+        "--pinned", action="store_true", help="hold vessel points where they are: a case without a vessel, which runs"
+    )
     read.set_defaults(func=_read)
     write = ways.add_parser("write", help="a case to a deck (v2)")
     write.add_argument("source", type=Path, metavar="CASE")
@@ -43,7 +47,7 @@ def _read(args: argparse.Namespace) -> int:
 
     try:
         base = _content(args.vessel, MAX_BYTES) if args.vessel else None
-        found = read_deck(_content(args.source, MAX_BYTES), base)
+        found = read_deck(_content(args.source, MAX_BYTES), base, pinned=args.pinned)
         _put(args.output, found.yaml)
     except CaseError as error:
         return _wrong(args.source, error)

@@ -68,7 +68,7 @@ def _vessel(case: Case, data: DataSource | None, errors: list[FieldError]) -> li
 
 def _steepness(case: Case, _: DataSource | None, __: list[FieldError]) -> list[str]:
     """Warnings about waves steeper than they can be."""
-    return steepness_warnings(case.environment)
+    return list(steepness_warnings(case.environment))
 
 
 @contextmanager

@@ -59,7 +59,7 @@ def upload_mesh(
     file: UploadFile,
     name: Annotated[str | None, Form(max_length=200)] = None,
 ) -> MeshDetail:
-    """STL, GDF, MSH (gmsh, text) or Nemoh's .dat, in metres with z = 0 in the still water (a job may scale and move it)."""
+    """STL, GDF, MSH (gmsh, text), Nemoh's .dat or HAMS' .pnl, in metres, z = 0 in the still water (jobs may scale and move)."""
     mesh, made = service.upload(context, scope, file.file.read(MAX_BYTES + 1), file.filename or "", name)
     response.status_code = 201 if made else 200
     return mesh

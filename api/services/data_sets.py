@@ -92,7 +92,7 @@ def _number(text: str) -> float | str:
 
 def _stored(files: Mapping[str, bytes], options: WamitFiles | None) -> tuple[HydrodynamicData, str, bytes]:
     """The data, and the name and bytes they are kept under: one file as it came, a set packed with its conventions."""
-    kinds = {kind for name in files if (kind := kind_of(name)) is not None}
+    kinds = {kind for name, payload in files.items() if payload.strip() and (kind := kind_of(name)) is not None}
     if not kinds:
         data = hydrodynamics.read_files(files)
         one = next(name for name in files if name == data.name)

@@ -1,4 +1,4 @@
-"""Meshes from files: GDF (WAMIT), Nemoh's .dat, MSH (gmsh, text), STL (text and binary). The content says the kind.
+"""Meshes from files: GDF (WAMIT), Nemoh's .dat, HAMS' .pnl, MSH (gmsh, text), STL (text and binary), by their content.
 
 Every reader is bounded by the size of what it is given: nothing is set aside for numbers that a header only claims.
 """
@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from itertools import takewhile
 from pathlib import PurePosixPath, PureWindowsPath
 
 import numpy as np
@@ -14,12 +15,25 @@ import numpy as np
 from ..outcome import DataError
 from .msh import read_msh
 from .panels import Panels, joined, welded
+from .pnl import is_pnl, read_pnl
 from .spec import MAX_PANELS
-from .textlines import Lines
+from .textlines import Lines, fortran_number
 
 Array = np.ndarray
 MAX_BYTES = 32 * 1024 * 1024
 COORDINATE = 1e6  # m
+KINDS = "STL, GDF (low order), MSH (text), Nemoh .dat or HAMS .pnl"
+_FOREIGN = (  # how files of other kinds begin, lower case
+    (rb"ply\b", "PLY"),
+    (rb"c?off\b", "OFF"),
+    (rb"# vtk", "VTK"),
+    (rb"<\?xml", "XML"),
+    (rb"iso-10303", "STEP"),
+    (rb"meshversionformatted", "Medit"),
+    (rb"\*(heading|node|keyword)", "Abaqus or LS-DYNA"),
+    (rb"(#[^\n]*\n|\s|(mtllib|o|g|s)\s[^\n]*\n)*vn?\s+[-+.\d]", "OBJ"),
+    (rb"[a-z_]+[,;]", "comma-separated text"),
+)
 FEET = (32.0, 32.4)  # a GRAV of 32.174 ft/s2
 _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
@@ -64,13 +78,27 @@ def _kind(payload: bytes, name: str) -> tuple[str, Callable[[bytes, str], Panels
                 f"{name}: a binary STL of {said} facets has {84 + 50 * said} bytes, this file has {len(payload)}; "
                 "it is truncated or damaged, write it again"
             )
-        raise DataError(
-            f"{name}: this is neither text nor a whole binary STL; upload STL, GDF, MSH (text) or Nemoh .dat"
-        )
+        raise DataError(f"{name}: this is neither text nor a whole binary STL; give a mesh as {KINDS}")
+    if is_pnl(head):
+        return "HAMS", read_pnl
     first = head.decode("latin-1").splitlines()[0].split()
     if len(first) == 2 and all(re.fullmatch(r"\d+", word) for word in first) and first[0] == "2":
         return "Nemoh", _read_nemoh
-    return "GDF", _read_gdf
+    if name.lower().endswith(".gdf") or _looks_like_gdf(head):
+        return "GDF", _read_gdf
+    foreign = next((kind for begin, kind in _FOREIGN if re.match(begin, head.lower())), None)
+    said = f", and looks like {foreign}" if foreign else ""
+    raise DataError(f"{name}: this is not a mesh of a known kind{said}; give a mesh as {KINDS}")
+
+
+def _looks_like_gdf(head: bytes) -> bool:
+    """Whether lines 2 to 4 hold two, two and one or two numbers and then text, as after the title of a GDF.
+
+    A file that ends before its fourth line is taken for a GDF, whose reader says where it is cut off.
+    """
+    lines = [line.split() for line in head.decode("latin-1").splitlines() if line.strip()][1:4]
+    numbers = [sum(1 for _ in takewhile(lambda word: fortran_number(word) is not None, line)) for line in lines]
+    return bool(lines) and all(few <= count <= 2 for few, count in zip((1, 1, 1), numbers, strict=False))
 
 
 # --- WAMIT
@@ -85,18 +113,48 @@ def _read_gdf(payload: bytes, name: str) -> Panels:
             "GRAV is that of feet, and so are the coordinates; write 9.80665 in its place and give geometry.scale: 0.3048"
         )
     isx, isy = (lines.symmetry(value) for value in lines.integers(2, "ISX and ISY"))
-    count = lines.integers(1, "the number of panels, NPAN")[0]
-    if not 0 < count <= 2 * MAX_PANELS:
-        raise lines.fault(f"NPAN is {count}; allowed: 1 to {2 * MAX_PANELS} (higher-order geometry is not read)")
+    count = _low_order(lines)
     corners = np.empty((min(count, len(payload) // 12 + 1), 4, 3))
     for panel in range(count):
         values = lines.numbers(12, f"panel {panel + 1} of {count}")
         corners[panel] = values.reshape(4, 3)
+    _nothing_follows(lines, count)
     mesh = Panels(corners.reshape(-1, 3), np.arange(4 * count).reshape(-1, 4))
     for axis, flag in ((0, isx), (1, isy)):
         if flag:
             mesh = joined([mesh, mesh.mirrored(axis)])
     return mesh
+
+
+def _low_order(lines: Lines) -> int:
+    """NPAN of a low-order file; NPATCH of one of flat patches (IGDEF = 0), which has the same form."""
+    words = lines.take("the number of panels, NPAN").split()
+    count = lines.whole(words[:1], "the number of panels, NPAN", 1)[0]
+    order = fortran_number(words[1]) if len(words) > 1 else None
+    if order:
+        raise lines.fault(
+            f"a high-order GDF (IGDEF = {order:g} beside NPATCH) holds patches, not panels; export it in low order, "
+            "such as with ILOWGDF = 1 in WAMIT"
+        )
+    if not 0 < count <= 2 * MAX_PANELS:
+        raise lines.fault(f"NPAN is {count}; allowed: 1 to {2 * MAX_PANELS}")
+    return count
+
+
+def _nothing_follows(lines: Lines, count: int) -> None:
+    """After the last panel: nothing, text, or NPAND = 0, the number of dipole panels. Raises DataError."""
+    if lines.done():
+        return
+    words = lines.take("the end of the file").split()
+    numbers = [fortran_number(word) for word in words]
+    known = next((k for k, value in enumerate(numbers) if value is None), len(numbers))
+    if known == 1 and numbers[0]:
+        raise lines.fault(f"NPAND is {words[0][:20]}: dipole panels, thin as plates, are not read; leave them out")
+    if known > 1 or (known == 1 and not lines.done()):
+        raise lines.fault(
+            f"the file goes on after panel {count}, the last of NPAN = {count} panels (line 4); correct NPAN, or take "
+            "out what follows"
+        )
 
 
 # --- Nemoh

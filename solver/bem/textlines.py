@@ -31,6 +31,12 @@ class Lines:
             self._next += 1
         return self._next >= len(self._lines)
 
+    def past(self, *marks: str) -> Lines:
+        """Past blank lines and those that begin with one of the marks."""
+        while not self.done() and self._lines[self._next].lstrip().startswith(marks):
+            self._next += 1
+        return self
+
     def fault(self, message: str) -> DataError:
         """An error about the line that was read last."""
         return DataError(f"{self.name}, line {max(self._next, 1)}: {message}")
@@ -57,7 +63,11 @@ class Lines:
 
     def integers(self, count: int, what: str) -> list[int]:
         """`count` whole numbers at the start of the next line."""
-        values = self.floats(count, what)
+        return self.whole(self.take(what).split()[:count], what, count)
+
+    def whole(self, words: list[str], what: str, count: int | None = None) -> list[int]:
+        """Words as whole numbers, `count` of them if that is given."""
+        values = self.parse(words, len(words) if count is None else count, what)
         if np.any(values != np.round(values)) or np.any(np.abs(values) > 1e15):
             raise self.fault(f"expected {what}: whole numbers; got {' '.join(f'{v:g}' for v in values)}")
         return [int(value) for value in values]

@@ -11,6 +11,7 @@ from ..case.vessel import Hydrodynamics
 from .data import HydrodynamicData
 from .data.pchip import pchip
 from .rigid import turned
+from .scale import arm, floors
 
 Array = np.ndarray
 
@@ -138,7 +139,8 @@ def _continued(data: HydrodynamicData) -> tuple[Array, Array]:
 def misfit(kernel: Retardation, data: HydrodynamicData, low: float, high: float) -> dict[tuple[str, int, int], float]:
     """Largest |A' - A| and |B' - B| at the data's frequencies in low..high [rad/s], over the peak of the pair (V20).
 
-    Keys ("added mass" | "damping", i, j), i <= j; couplings below a thousandth of √(ii·jj) are left out.
+    Keys ("added mass" | "damping", i, j), i <= j; couplings below a thousandth of √(ii·jj) are left out, and a diagonal
+    that is rounding (Q0).
     """
     nodes, added_mass, damping = data.radiation_nodes()
     inside = (nodes >= low) & (nodes <= high)
@@ -149,10 +151,13 @@ def misfit(kernel: Retardation, data: HydrodynamicData, low: float, high: float)
         ("added mass", "damping"), kernel.transform(nodes[inside]), (added_mass, damping), strict=True
     ):
         peak = np.abs(theirs).max(axis=0)
-        scale = np.sqrt(np.outer(np.diag(peak), np.diag(peak)))
+        zero = floors(np.diag(peak), arm(data) ** 2)
+        size = np.sqrt(np.maximum(np.diag(peak), zero))
+        least = NEGLIGIBLE * np.outer(size, size)
+        np.fill_diagonal(least, zero)
         gap = np.abs(ours - theirs[inside]).max(axis=0)
         for i, j in zip(*np.triu_indices(6), strict=True):
-            if peak[i, j] > NEGLIGIBLE * scale[i, j] and peak[i, j] > 0:
+            if peak[i, j] > least[i, j]:
                 found[what, int(i), int(j)] = float(gap[i, j] / peak[i, j])
     return found
 

@@ -107,3 +107,23 @@ def as_msh4(mesh: Panels) -> bytes:
             body.append(f"{number} {' '.join(map(str, corners))}")
     text = ["$MeshFormat", "4.1 0 8", "$EndMeshFormat", "$Nodes", *nodes, "$EndNodes"]
     return ("\n".join([*text, "$Elements", *body, "$EndElements"]) + "\n").encode()
+
+
+def as_pnl(mesh: Panels, isx: int = 0, isy: int = 0) -> bytes:
+    """As HAMS' mesh converter writes it."""
+    nodes = [f"{i + 1} {x:.17g} {y:.17g} {z:.17g}" for i, (x, y, z) in enumerate(mesh.vertices)]
+    panels = [f"{i + 1} {kind + 1} {' '.join(map(str, corners))}" for i, (kind, corners) in enumerate(_faces(mesh))]
+    text = [
+        "    --------------Hull Mesh File---------------",
+        "",
+        "    # Number of Panels, Nodes, X-Symmetry and Y-Symmetry",
+    ]
+    text += [
+        f"  {len(panels)} {len(nodes)} {isx} {isy}",
+        "",
+        "    # Start Definition of Node Coordinates     ! node x y z",
+    ]
+    text += [*nodes, "   # End Definition of Node Coordinates", "", "   # Start Definition of Node Relations", *panels]
+    return (
+        "\n".join([*text, "   # End Definition of Node Relations", "", "  --------End Hull Mesh File-------"]) + "\n"
+    ).encode()

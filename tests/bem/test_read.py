@@ -14,7 +14,18 @@ from solver.bem.panels import Panels
 from solver.bem.read import MAX_BYTES, read_mesh
 from solver.outcome import DataError
 
-from .shapes import as_ascii_stl, as_gdf, as_msh2, as_msh4, as_nemoh, as_stl, box, hemisphere, hemisphere_quarter
+from .shapes import (
+    as_ascii_stl,
+    as_gdf,
+    as_msh2,
+    as_msh4,
+    as_nemoh,
+    as_pnl,
+    as_stl,
+    box,
+    hemisphere,
+    hemisphere_quarter,
+)
 
 WRITERS: dict[str, Callable[[Panels], bytes]] = {
     "GDF": as_gdf,
@@ -23,6 +34,7 @@ WRITERS: dict[str, Callable[[Panels], bytes]] = {
     "STL text": as_ascii_stl,
     "MSH": as_msh2,
     "MSH 4": as_msh4,
+    "HAMS": as_pnl,
 }
 
 
@@ -57,6 +69,7 @@ def test_fortran_numbers() -> None:
 
 
 GDF, NEMOH, MSH = as_gdf(box(size=1.0)).decode(), as_nemoh(box(size=1.0)).decode(), as_msh2(box(size=1.0)).decode()
+PNL = as_pnl(box(size=1.0)).decode()
 
 
 @pytest.mark.parametrize(

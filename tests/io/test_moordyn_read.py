@@ -154,7 +154,7 @@ REFUSED = [
     ("200 WtrDpth - depth", "200 WtrDpth - depth\n190 depth - again", "given twice", "190"),
     ("(-) (-) (-) (-) (m) (-) (-)\n1 rope", "1 rope", "line of units is missing", "1 rope"),
     ("ID LineType AttachA AttachB UnstrLen NumSegs", "ID LineType NumSegs AttachA AttachB UnstrLen", "reads by place", "ID"),
-    ("------ LINES ------", "------ SYROPE ------", "section is not known", "------ SYROPE"),
+    ("------ LINES ------", "------ SYROPE ------", "none of its key words", "------ SYROPE"),
     ("3 Free  -300 0 -100 1500 1.2 3.5 0.6", "3 Free  -300 0 -100 1500 1.2 3.5", "8 columns", "3 Free"),
 ]  # fmt: skip
 

@@ -1,8 +1,4 @@
-"""The text of a MoorDyn deck as tables of words, each with its line number.
-
-MoorDyn reads columns by their place, not by their names. A header that names the columns in another order than MoorDyn
-reads them is therefore refused, and one that names nothing known is taken by place (MoorDyn documentation, "Inputs").
-"""
+"""The text of a MoorDyn deck as tables of words, each with its line number (MoorDyn documentation, "Inputs")."""
 
 from __future__ import annotations
 
@@ -12,65 +8,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from ...outcome import CaseError, FieldError
+from .columns import ORDERS, order_of
+from .headings import HEADLESS, OTHER, has_dashes, heading, section_of, without_comment
 
 MAX_BYTES = 1_000_000
 MAX_ROWS = 20_000
 MAX_ERRORS = 50
-
-_SECTIONS = {  # MoorDyn's words for a section, upper case, v1 and v2
-    "types": ("LINE TYPES", "LINE TYPE", "LINE DICTIONARY"),
-    "rod types": ("ROD TYPES", "ROD TYPE", "ROD DICTIONARY"),
-    "bodies": ("BODIES", "BODY LIST", "BODY PROPERTIES"),
-    "rods": ("RODS", "ROD LIST", "ROD PROPERTIES"),
-    "points": ("POINTS", "POINT LIST", "POINT PROPERTIES", "CONNECTION PROPERTIES", "CONNECTIONS", "NODE PROPERTIES"),
-    "lines": ("LINES", "LINE LIST", "LINE PROPERTIES"),
-    "failure": ("FAILURE",),
-    "control": ("CONTROL",),
-    "external loads": ("EXTERNAL LOADS",),
-    "options": ("OPTIONS", "SOLVER OPTIONS"),
-    "outputs": ("OUTPUTS", "OUTPUT"),
-}
-_HEADLESS = ("options", "outputs")  # no rows of names and units
-
-_NAMES = {
-    "types": {
-        "name": ("name", "linetype", "typename", "type"), "diameter": ("diam", "diameter", "d"),
-        "mass": ("mass/m", "massden", "massdeninair", "mass"), "EA": ("ea",), "BA": ("ba/-zeta", "ba", "ba/zeta"),
-        "EI": ("ei",),
-        "Cdn": ("cd", "cdn"), "Can": ("ca", "can"), "Cdt": ("cdax", "cdt"), "Cat": ("caax", "cat"), "Cl": ("cl",),
-        "dF": ("df",), "cF": ("cf",),
-    },
-    "points": {
-        "id": ("id", "node", "num", "point", "connection"), "kind": ("type", "attachment", "attach"), "x": ("x",), "y": ("y",),
-        "z": ("z",), "mass": ("m", "mass"), "volume": ("v", "volume", "vol"), "FX": ("fx",), "FY": ("fy",), "FZ": ("fz",),
-        "CdA": ("cda", "cda*"), "Ca": ("ca", "ca*"),
-    },
-    "lines": {
-        "id": ("id", "line", "num"), "type": ("linetype", "type"), "a": ("attacha", "nodeanch", "nodea", "anchor"),
-        "b": ("attachb", "nodefair", "nodeb", "fairlead"), "length": ("unstrlen", "length"),
-        "segments": ("numsegs", "numseg", "segs"), "outputs": ("outputs", "lineoutputs", "flags/outputs", "flags"),
-    },
-    "bodies": {
-        "id": ("id",), "kind": ("attachment", "type"), "x": ("x0",), "y": ("y0",), "z": ("z0",), "roll": ("r0",),
-        "pitch": ("p0",), "yaw": ("y0",), "mass": ("mass",), "cg": ("cg*", "cg"), "inertia": ("i*", "i"), "volume": ("volume",),
-        "CdA": ("cda*", "cda"), "Ca": ("ca*", "ca"),
-    },
-}  # fmt: skip
-_ORDERS = {  # (version, columns in the order MoorDyn reads them, how many may be missing at the end)
-    "types": (
-        ("v2", "name diameter mass EA BA EI Cdn Can Cdt Cat Cl dF cF", 3),
-        ("v1", "name diameter mass EA BA Can Cat Cdn Cdt", 0),
-    ),
-    "points": (
-        ("v2", "id kind x y z mass volume CdA Ca", 0),
-        ("v1", "id kind x y z mass volume FX FY FZ CdA Ca", 0),
-    ),
-    "lines": (
-        ("v2", "id type a b length segments outputs", 1),
-        ("v1", "id type length segments a b outputs", 1),
-    ),
-    "bodies": (("v2", "id kind x y z roll pitch yaw mass cg inertia volume CdA Ca", 0),),
-}
 
 
 @dataclass(frozen=True)
@@ -86,7 +29,10 @@ class Row:
 
 @dataclass
 class Deck:
-    """A deck as read: rows by section (`types`, `points`, `lines`, `bodies`, …), versions of the column order, options."""
+    """A deck as read: rows by section (`types`, `points`, `lines`, `bodies`, …), versions of the column order, options.
+
+    other : line and words of the last heading that opens no section.
+    """
 
     title: str = ""
     rows: dict[str, list[Row]] = field(default_factory=dict)
@@ -94,6 +40,7 @@ class Deck:
     raw: dict[str, list[tuple[int, list[str]]]] = field(default_factory=dict)
     lines: dict[str, int] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    other: tuple[int, str] = (0, "")
 
 
 class Faults:
@@ -115,33 +62,54 @@ class Faults:
 def parse_deck(text: str | bytes) -> Deck:
     """The sections of a deck. Raises CaseError with line numbers."""
     found, faults = Deck(), Faults()
-    section, skip = "", 0
+    section, skip = "", 0  # "" before the first section and after the last
     for number, line in enumerate(_lines(text), 1):
-        heading = _heading(line)
-        if heading == "end":
-            break
-        if heading is not None:
-            known = _section(heading)
-            if known is None and section:
-                faults.add(number, (heading[:40],), "this section is not known here; take it out if it does not matter")
-                known = "unknown"
-            section = known or ""
-            if section in found.lines and section != "unknown":
-                faults.add(number, (section,), f"the section is given twice, first in line {found.lines[section]}")
-            found.lines.setdefault(section, number)
-            skip = 0 if section in _HEADLESS else 2
+        words = heading(line)
+        if words is not None:
+            section = _open(found, faults, number, words, section)
+            skip = 0 if section in HEADLESS else 2
         elif not section:
             if line.strip() and not found.title and "echo" not in line.lower():
                 found.title = line.strip()[:200]
-        elif section != "unknown":
-            if section == "outputs" and line.split()[:1] == ["END"]:
-                break
+        elif section == OTHER:
+            if without_comment(line).strip():
+                _skipped(found, faults)
+                section = ""
+        elif section == "outputs" and line.split()[:1] == ["END"]:
+            section = ""
+        elif has_dashes(line):
+            message = (
+                "the line holds '---', which MoorDyn takes for a heading and the end of the section; write one dash"
+            )
+            faults.add(number, (section,), message, line.strip())
+        else:
             skip = _take(found, faults, section, number, line, skip)
-    found.lines.pop("", None)
     faults.stop()
     _name_columns(found, faults)
     faults.stop()
     return found
+
+
+def _open(found: Deck, faults: Faults, number: int, words: str, before: str) -> str:
+    """The section that begins at a heading; "" for text that MoorDyn skips before the first and after the last one."""
+    section = section_of(words)
+    if section is None:
+        found.other = (number, words)
+        return OTHER if before and not words.startswith("NEED THIS LINE") else ""
+    if section in found.lines:
+        message = f"the section is given twice, first in line {found.lines[section]}"
+        faults.add(number, (section,), f"{message}; MoorDyn finds its key word in this heading", words)
+    found.lines.setdefault(section, number)
+    return section
+
+
+def _skipped(found: Deck, faults: Faults) -> None:
+    number, words = found.other
+    message = (
+        "MoorDyn finds none of its key words in this heading and skips the rows below it; correct the heading, or take "
+        "it out with its rows if they do not matter"
+    )
+    faults.add(number, (words[:40] or "heading",), message, words)
 
 
 def _lines(text: str | bytes) -> Iterator[str]:
@@ -165,22 +133,10 @@ def _decoded(payload: bytes) -> str:
         return payload.decode("latin-1")  # of Windows editors: only titles and comments hold such letters
 
 
-def _heading(line: str) -> str | None:
-    """Words of a heading, `end` at MoorDyn's last line, None for any other line."""
-    if not re.match(r"\s*---", line):
-        return None
-    words = " ".join(re.sub(r"-{2,}", " ", line).split()).strip("- ").upper()
-    return "end" if words.startswith("NEED THIS LINE") else words
-
-
-def _section(heading: str) -> str | None:
-    return next((name for name, words in _SECTIONS.items() if heading in words), None)
-
-
 def _take(found: Deck, faults: Faults, section: str, number: int, line: str, skip: int) -> int:
     """One line inside a section; returns how many rows of names and units are still to come."""
     if skip:
-        words = line.split()
+        words = (without_comment(line) if skip == 2 else line).split()
         if not words:
             return skip
         if skip == 2 and len(words) > 1 and re.fullmatch(r"\d+", words[0]) and re.match(r"N[A-Z]", words[1]):
@@ -191,57 +147,35 @@ def _take(found: Deck, faults: Faults, section: str, number: int, line: str, ski
             message = "the line of units is missing: MoorDyn skips two lines after a heading, names and (units)"
             faults.add(number, (section,), message, line.strip())
         return skip - 1
-    words = re.split(r"[!#%]", line, maxsplit=1)[0].split()
+    words = without_comment(line).split()
     if words:
         found.raw.setdefault(section, []).append((number, words))
     return 0
 
 
 def _name_columns(found: Deck, faults: Faults) -> None:
-    for section in _ORDERS:
+    for section in ORDERS:
         rows = found.raw.get(section, [])
         if not rows:
             continue
         line, header = found.raw[f"{section} columns"][0]
-        order = _order(found, faults, section, line, header, len(rows[0][1]))
-        if order is None:
+        order = order_of(section, header, len(rows[0][1]))
+        if isinstance(order, str):
+            faults.add(line, (section,), order, " ".join(header))
             continue
-        version, columns, optional = order
-        found.versions[section] = version
+        if order.by_place:
+            found.notes.append(
+                f"{section}: the names of the columns are not known; taken by place, as MoorDyn {order.version}"
+            )
+        found.versions[section] = order.version
         for number, words in rows:
-            if not len(columns) - optional <= len(words) <= len(columns):
-                few = len(columns) - optional
-                allowed = f"{few} to {len(columns)}" if optional else f"{few}"
-                message = f"the row has {len(words)} columns; allowed: {allowed} ({' '.join(columns)})"
+            if not order.takes(len(words)):
+                few = len(order.columns) - order.optional
+                allowed = f"{few} to {len(order.columns)}" if order.optional else f"{few}"
+                message = f"the row has {len(words)} columns; allowed: {allowed} ({' '.join(order.columns)})"
                 faults.add(number, (section, words[0]), message, " ".join(words))
                 continue
-            found.rows.setdefault(section, []).append(Row(number, dict(zip(columns, words, strict=False))))
-
-
-def _order(
-    found: Deck, faults: Faults, section: str, line: int, header: list[str], width: int
-) -> tuple[str, list[str], int] | None:
-    """Which of MoorDyn's column orders a table has: by its header if that names columns, else by its width."""
-    known = _NAMES[section]
-    named = [[name for name, words in known.items() if word.lower() in words] for word in header]
-    orders = [(version, columns.split(), optional) for version, columns, optional in _ORDERS[section]]
-    if sum(map(bool, named)) >= 0.6 * len(header):
-        for version, columns, optional in orders:
-            fits = len(columns) - optional <= len(header) <= len(columns)
-            if fits and all(not names or column in names for column, names in zip(columns, named, strict=False)):
-                return version, columns, optional
-        expected = " or ".join(f"{version}: {' '.join(columns)}" for version, columns, _ in orders)
-        message = f"the columns are not in an order MoorDyn reads; it reads by place, not by name ({expected})"
-        faults.add(line, (section,), message, " ".join(header))
-        return None
-    for version, columns, optional in orders:
-        if len(columns) - optional <= width <= len(columns):
-            found.notes.append(
-                f"{section}: the names of the columns are not known; taken by place, as MoorDyn {version}"
-            )
-            return version, columns, optional
-    faults.add(line, (section,), f"{width} columns fit no table of MoorDyn's", " ".join(header))
-    return None
+            found.rows.setdefault(section, []).append(Row(number, dict(zip(order.columns, words, strict=False))))
 
 
 def number(

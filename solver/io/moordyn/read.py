@@ -14,8 +14,9 @@ from ...case.text import read_text, write_text
 from ...case.vessel import Vessel
 from ...outcome import CaseError, FieldError
 from .deck import Deck, Faults, parse_deck, parse_number
+from .placement import Placement, off_the_bed, tidy
 from .report import Report, printable
-from .system import Chain, Point, System, build_system
+from .system import Chain, System, build_system
 
 SOIL, BED_DAMPING = 3.0e6, 3.0e5  # MoorDyn's defaults of kBot [Pa/m] and cBot [Pa s/m]
 GRAVITY, DENSITY = 9.80665, 1025.0
@@ -49,18 +50,22 @@ class Imported:
     errors: tuple[FieldError, ...] = ()
 
 
-def read_deck(text: str | bytes, base: str | bytes | None = None, name: str | None = None) -> Imported:
+def read_deck(
+    text: str | bytes, base: str | bytes | None = None, name: str | None = None, pinned: bool = False
+) -> Imported:
     """A case from the text of a deck.
 
     base : text of a case (or only of its `vessel:`) whose vessel, sea and analyses are kept; its lines are replaced.
     Without it, where lines hang on a vessel, the vessel is a template to be filled in, which the check of a case refuses.
+    pinned : vessel points are held at their places in the deck, and the case has no vessel; not together with a base.
     Raises CaseError with line numbers of the deck, or with fields of the base.
     """
+    if pinned and base is not None:
+        raise CaseError([FieldError(("vessel",), "a case with a vessel and pinned ends exclude each other; give one")])
     deck, report, faults = parse_deck(text), Report(), Faults()
-    system = build_system(deck, faults, report)
     options = _options(deck, faults, report)
-    faults.stop()
-    kept = _base(base)
+    kept = _base(base) if not faults.errors else {}
+    system = build_system(deck, faults, report, _depth(options, kept), pinned)
     data: dict[str, Any] = {
         "slowdrift": 1,
         "name": printable(name or "") or kept.get("name") or printable(deck.title).strip("- ")[:200] or "MoorDyn deck",
@@ -77,6 +82,9 @@ def read_deck(text: str | bytes, base: str | bytes | None = None, name: str | No
         f"line type {pair.replace(' ', ' is called ')}, for a case takes plain letters" for pair in renamed
     )
     data |= _lines(system, data["environment"]["depth"], vessel, report)
+    if pinned:
+        report.assumed.append("coupled points are pinned where they stand in the deck; there is no vessel")
+    off_the_bed(system, data["environment"]["depth"], report)
     _bed_damping(options, system, data, report)
     data["analyses"] = kept.get("analyses") or {"statics": {}}
     data = {key: value for key, value in data.items() if value is not None and value != []}
@@ -146,6 +154,12 @@ def _options(deck: Deck, faults: Faults, report: Report) -> dict[str, float]:
     return found
 
 
+def _depth(options: dict[str, float], kept: dict[str, Any]) -> float | None:
+    """That of the deck, else that of the base, where one of them gives it [m]."""
+    own = options.get("depth") or (kept.get("environment") or {}).get("depth")
+    return None if own is None else _number(own, "depth")
+
+
 def _environment(options: dict[str, float], kept: dict[str, Any], system: System, report: Report) -> dict[str, Any]:
     environment = dict(kept.get("environment") or {})
     depth = environment.get("depth")
@@ -210,7 +224,7 @@ def _bed_damping(options: dict[str, float], system: System, data: dict[str, Any]
         first = chain.links[0]
         areas.append(system.kinds[first.type].diameter * first.length / first.segments)
     mean = sum(areas) / len(areas)
-    data["environment"]["seabed"]["damping"] = _tidy(cBot * mean)
+    data["environment"]["seabed"]["damping"] = tidy(cBot * mean)
     said = (
         ""
         if max(areas) - min(areas) < 1e-9 * mean
@@ -248,13 +262,18 @@ def _labels(system: System) -> dict[str, str]:
 
 def _lines(system: System, depth: float, vessel: Any, report: Report) -> dict[str, Any]:
     """Lines and attachments; lines that are equal in everything become one with a multiplicity."""
-    place = _Placement(depth, vessel, report)
+    place = Placement(depth, vessel, system.points.values(), report)
     labels = _labels(system)
     lines: dict[str, Any] = {}
     attachments: list[dict[str, Any]] = []
     seen: dict[str, str] = {}
     for chain in system.chains:
         name = f"line-{min(chain.links, key=lambda link: link.row.line).id}"
+        if chain.start.kind == chain.end.kind == "coupled":
+            report.assumed.append(
+                f"{name} runs from the vessel to itself, points {chain.start.id} and {chain.end.id}, "
+                f"{math.dist(chain.start.xyz, chain.end.xyz):.4g} m apart; if they are on two vessels, the case is wrong"
+            )
         loads = _loads(chain)
         spec = _line(chain, place, labels)
         key = json.dumps([spec, loads], sort_keys=True)
@@ -271,7 +290,7 @@ def _lines(system: System, depth: float, vessel: Any, report: Report) -> dict[st
     return {"lines": lines, "attachments": attachments}
 
 
-def _line(chain: Chain, place: _Placement, labels: dict[str, str]) -> dict[str, Any]:
+def _line(chain: Chain, place: Placement, labels: dict[str, str]) -> dict[str, Any]:
     segments = [{"type": labels[link.type], "length": link.length, "elements": link.segments} for link in chain.links]
     spec: dict[str, Any] = {"segments": segments, "end_a": place.end(chain.start), "end_b": place.end(chain.end)}
     if math.dist(chain.start.xyz, chain.end.xyz) >= chain.length:
@@ -285,40 +304,8 @@ def _loads(chain: Chain) -> list[dict[str, Any]]:
         arc += link.length
         if joint.is_loaded:
             load = {"mass": joint.mass, "volume": joint.volume, "drag_area": joint.CdA, "added_mass": joint.Ca}
-            found.append({"arc_length": _tidy(arc), **load})
+            found.append({"arc_length": tidy(arc), **load})
     return found
-
-
-class _Placement:
-    """Points of the deck as ends of lines: vessel points from the deck's reference to the centre of gravity."""
-
-    def __init__(self, depth: float, vessel: Any, report: Report):
-        self.depth = depth
-        self.vessel = Vessel.model_validate(vessel) if vessel is not None else None
-        if self.vessel is not None:
-            report.assumed.append(
-                "vessel points are relative to (0, 0, 0) of the design position, at the mean water level"
-            )
-            if self.vessel.heading:
-                report.assumed.append(
-                    "the deck's axes are the earth's, and its points those of the vessel at its heading"
-                )
-
-    def end(self, point: Point) -> dict[str, Any]:
-        x, y, z = point.xyz
-        if point.kind == "fixed":
-            if abs(z + self.depth) <= 1e-6 * self.depth:
-                return {"anchor": {"point": [x, y]}}
-            return {"pinned": [x, y, z]}
-        if self.vessel is None:
-            return {
-                "fairlead": [
-                    f"{value:g} m minus {axis} of the CG" for value, axis in zip(point.xyz, "xyz", strict=True)
-                ]
-            }
-        c, s = math.cos(self.vessel.heading), math.sin(self.vessel.heading)
-        gx, gy, gz = self.vessel.centre_of_gravity
-        return {"fairlead": [_tidy(c * x + s * y - gx), _tidy(c * y - s * x - gy), _tidy(z - gz)]}
 
 
 def _template(report: Report) -> dict[str, Any]:
@@ -334,8 +321,3 @@ def _template(report: Report) -> dict[str, Any]:
         "mass": f"{FILL} (kg)", "centre_of_gravity": f"{FILL} ([x, y, z] from the deck's reference)",
         "radii_of_gyration": f"{FILL} ([roll, pitch, yaw], m)", "hydrodynamics": {"data": f"{FILL} (a file or data set)"},
     }  # fmt: skip
-
-
-def _tidy(value: float) -> float:
-    """A computed number to 12 digits: -14 + 1.7 is -12.3."""
-    return float(f"{value:.12g}")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from .deck import Deck, Faults, Row, number
@@ -11,6 +13,9 @@ from .report import Report
 FIXED = ("fixed", "fix", "anchor")
 COUPLED = ("vessel", "ves", "vess", "coupled", "cpld")
 FREE = ("free", "point", "connect", "con", "conn")
+ON_THE_BED = ("seabed", "ground", "floor")  # in place of a number of z, as MoorDyn-F takes it
+SEVERAL = "model the mooring of each in a case of its own, or hold all ends where they are (pinned)"
+LONGEST_HULL = 500.0  # m: the longest ship and barge built are shorter
 
 
 @dataclass(frozen=True)
@@ -78,26 +83,58 @@ class System:
     kinds: dict[str, Kind] = field(default_factory=dict)
     points: dict[str, Point] = field(default_factory=dict)
     lines: list[DeckLine] = field(default_factory=list)
+    line_ids: set[str] = field(default_factory=set)
     chains: list[Chain] = field(default_factory=list)
 
 
-def build_system(deck: Deck, faults: Faults, report: Report) -> System:
-    """The mooring of a deck. Raises CaseError with every fault found, each with its line."""
+def build_system(
+    deck: Deck, faults: Faults, report: Report, depth: float | None = None, pinned: bool = False
+) -> System:
+    """The mooring of a deck. Raises CaseError with every fault found, each with its line.
+
+    depth : of the water [m], for points that are put on the seabed by a word; pinned : coupled points are held where
+    they are, so that several vessels need no refusal.
+    """
     system = System()
     _refused_sections(deck, faults)
     for row in deck.rows.get("types", []):
         _kind(system, row, faults, report)
-    bodies = _bodies(deck, faults)
+    bodies = _bodies(deck, faults, pinned)
     for row in deck.rows.get("points", []):
-        _point(system, row, bodies, faults, report)
+        _point(system, row, bodies, faults, report, depth, pinned)
     for row in deck.rows.get("lines", []):
         _line(system, row, faults)
     if not system.lines and not faults.errors:
         faults.add(deck.lines.get("lines"), ("lines",), "the deck has no lines; is it a MoorDyn deck?")
     faults.stop()
+    _one_hull(system, faults)
     _chains(system, faults)
     faults.stop()
     return system
+
+
+def _one_hull(system: System, faults: Faults) -> None:
+    """Coupled points farther apart than any hull is long belong to several vessels, which a case does not have."""
+    used = {end for line in system.lines for end in (line.a, line.b)}
+    points = [point for name, point in system.points.items() if point.kind == "coupled" and name in used]
+    if not points:
+        return
+    other, one, apart = far_apart(points)
+    if apart > LONGEST_HULL:
+        message = (
+            f"coupled points {other.id} and {one.id} are {apart:.4g} m apart; allowed on one vessel: {LONGEST_HULL:g} m. "
+            f"A case has one vessel; {SEVERAL}"
+        )
+        faults.add(one.row.line, ("points", one.id), message, f"{apart:.4g}")
+
+
+def far_apart(points: Sequence[Point]) -> tuple[Point, Point, float]:
+    """Two points of the largest distance, and it [m]: the farthest from the mean, and the farthest from that one."""
+    middle = [sum(values) / len(points) for values in zip(*(point.xyz for point in points), strict=True)]
+    one = max(points, key=lambda point: math.dist(point.xyz, middle))
+    other = max(points, key=lambda point: math.dist(point.xyz, one.xyz))
+    one, other = sorted((one, other), key=lambda point: point.row.line)
+    return one, other, math.dist(one.xyz, other.xyz)
 
 
 def _refused_sections(deck: Deck, faults: Faults) -> None:
@@ -148,15 +185,18 @@ def _kind(system: System, row: Row, faults: Faults, report: Report) -> None:
         )
 
 
-def _bodies(deck: Deck, faults: Faults) -> dict[str, tuple[str, tuple[float, float, float]]]:
+def _bodies(deck: Deck, faults: Faults, pinned: bool) -> dict[str, tuple[str, tuple[float, float, float]]]:
     """Bodies that move with the vessel or not at all, by number: kind and place."""
-    found = {}
+    found: dict[str, tuple[str, tuple[float, float, float]]] = {}
     for row in deck.rows.get("bodies", []):
         kind = _kind_of(row["kind"])
+        if kind == "coupled" and not pinned and any(other == "coupled" for other, _ in found.values()):
+            message = f"a second coupled body is a second vessel (MoorDyn gives each six degrees of freedom); {SEVERAL}"
+            faults.add(row.line, ("bodies", row["id"]), message, row["kind"])
         if kind in (None, "free"):
             message = "a body that moves on its own is a second vessel; a case has one. Model its mooring in a case of its own"
             faults.add(row.line, ("bodies", row["id"]), message, row["kind"])
-            continue
+            kind = "fixed"  # refused already; its points need no refusal of their own
         x, y, z, *angles = (
             number(row, key, faults, "bodies", -1e6, 1e6) for key in ("x", "y", "z", "roll", "pitch", "yaw")
         )
@@ -180,6 +220,8 @@ def _point(
     bodies: dict[str, tuple[str, tuple[float, float, float]]],
     faults: Faults,
     report: Report,
+    depth: float | None,
+    pinned: bool,
 ) -> None:
     name, word = row["id"], row["kind"]
     if name in system.points:
@@ -192,15 +234,20 @@ def _point(
         message = (
             f"{word!r} is not known as an attachment; known: Fixed, Coupled or Vessel, Free, and bodies of the deck"
         )
+        if re.fullmatch(r"t(urbine)?\d+", word.lower()):
+            message = f"{word!r} is a turbine of FAST.Farm, whose decks hold several vessels; {SEVERAL}"
         faults.add(row.line, ("points", name), message, word)
         return
-    x, y, z = (number(row, key, faults, "points", -1e6, 1e6) for key in ("x", "y", "z"))
+    x, y = (number(row, key, faults, "points", -1e6, 1e6) for key in ("x", "y"))
+    z = _height(row, faults, depth, attached=word.lower().startswith("body"))
     load = {key: number(row, key, faults, "points", 0.0) for key in ("mass", "volume", "CdA")}
     Ca = number(row, "Ca", faults, "points", 0.0, 100.0)
     for key in ("FX", "FY", "FZ"):
         if key in row.cells and number(row, key, faults, "points") != 0.0:
             message = "a steady force at a point is not part of a case; use vessel.constant_load, or an attachment"
             faults.add(row.line, ("points", name, key), message, row[key])
+    if pinned and kind == "coupled":
+        kind = "fixed"
     point = Point(name, row, kind, (x + shift[0], y + shift[1], z + shift[2]), **load, Ca=Ca)
     system.points[name] = point
     if point.is_loaded and kind != "free":
@@ -208,11 +255,23 @@ def _point(
         report.dropped.append(f"point {name}: mass, volume or drag area at a {kind} point; {what}")
 
 
+def _height(row: Row, faults: Faults, depth: float | None, attached: bool) -> float:
+    """z of a point [m]: a number, or the depth for a word such as `seabed`; NaN with a fault."""
+    if not any(word in row["z"].lower() for word in ON_THE_BED):
+        return number(row, "z", faults, "points", -1e6, 1e6)
+    if depth is None or attached:
+        why = "of a body's point z is from the body" if attached else "the deck gives no WtrDpth"
+        faults.add(row.line, ("points", row["id"], "z"), f"z is {row['z'][:20]}, but {why}; give it in m", row["z"])
+        return math.nan
+    return -depth
+
+
 def _line(system: System, row: Row, faults: Faults) -> None:
     name = row["id"]
-    if any(line.id == name for line in system.lines):
+    if name in system.line_ids:
         faults.add(row.line, ("lines", name), "this line is given twice", name)
         return
+    system.line_ids.add(name)
     if row["type"] not in system.kinds and not faults.errors:
         known = ", ".join(system.kinds) or "none"
         faults.add(row.line, ("lines", name, "type"), f"no line type {row['type']!r}; known: {known}", row["type"])

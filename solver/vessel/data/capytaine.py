@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -60,6 +60,7 @@ def read_capytaine(payload: bytes, name: str) -> HydrodynamicData:
     if speed:
         raise DataError(f"{name}: forward_speed is {speed:g} m/s; compute the data at zero speed")
     warnings: list[str] = []
+    layout = _computed(dataset, layout, warnings)
     added_mass, zero, infinite = _radiation(dataset, "added_mass", layout)
     damping, _, _ = _radiation(dataset, "radiation_damping", layout)
     excitation, excitation_zero = _excitation(dataset, layout)
@@ -145,6 +146,43 @@ def _layout(dataset: Dataset, name: str) -> _Layout:
     return layout
 
 
+def _computed(dataset: Dataset, layout: _Layout, warnings: list[str]) -> _Layout:
+    """The layout without the lowest frequencies where nothing was computed: all values of a variable are NaN.
+
+    Capytaine leaves NaN where kh < 0.1. Raises DataError for such a frequency elsewhere.
+    """
+    finite = layout.finite
+    lacking = np.zeros(finite.size, dtype=bool)
+    parts = ("Froude_Krylov_force", "diffraction_force")
+    forces = parts if all(part in dataset for part in parts) else ("excitation_force",)
+    for variable in ("added_mass", "radiation_damping", *forces):
+        item = dataset.get(variable)
+        if item is not None and item.values is not None and layout.dim in item.dims:
+            unknown = np.isnan(item.values)
+            if "complex" in item.dims:  # NaN in the real part alone is one too
+                unknown = unknown.any(axis=item.dims.index("complex"), keepdims=True)
+            unknown = np.moveaxis(unknown, item.dims.index(layout.dim), 0)
+            lacking |= unknown.reshape(layout.omega.size, -1).all(axis=1)[finite]
+    if not lacking.any():
+        return layout
+    lowest = np.logical_and.accumulate(lacking)
+    omega = layout.omega[finite]
+    if np.any(lacking & ~lowest) or lowest.all():
+        raise DataError(
+            f"{layout.name}: nothing was computed at {_listed(omega[lacking])} (NaN); compute these frequencies "
+            f"before exporting, or leave them out"
+        )
+    warnings.append(
+        f"{layout.name}: the lowest frequencies, {_listed(omega[lowest])}, hold no values (NaN) and are left out; the data "
+        f"begin at {omega[~lowest][0]:.4g} rad/s"
+    )
+    return replace(layout, order=layout.order[~np.isin(layout.order, finite[lowest])])
+
+
+def _listed(omega: Array) -> str:
+    return f"{', '.join(f'{value:.4g}' for value in omega[:8])}{', …' if omega.size > 8 else ''} rad/s"
+
+
 def _headings(dataset: Dataset, name: str) -> tuple[Array, Array]:
     """Headings in [0, 2π), rising, and their positions in the file."""
     beta = numbers(dataset, "wave_direction", name)
@@ -169,7 +207,7 @@ def _radiation(dataset: Dataset, variable: str, layout: _Layout) -> tuple[Array,
         "solve the radiation problems of all six degrees of freedom",
     )  # fmt: skip
     values = values[:, layout.influenced][:, :, layout.radiating].real
-    finite = _finite(values[layout.finite], variable, name)
+    finite = _finite(values[layout.finite], variable, name, layout.omega[layout.finite])
     edges = []
     for edge in (0.0, math.inf):
         index = layout.at(edge)
@@ -194,7 +232,7 @@ def _excitation(dataset: Dataset, layout: _Layout) -> tuple[Array, Array | None]
     total = np.conj(total[:, layout.turn][:, :, layout.influenced])
     zero = layout.at(0.0)
     limit = None if zero is None or not np.all(np.isfinite(total[zero])) else total[zero].real
-    return _finite(total[layout.finite], variable, name), limit
+    return _finite(total[layout.finite], variable, name, layout.omega[layout.finite]), limit
 
 
 def _mean_drift(dataset: Dataset, layout: _Layout) -> Array | None:
@@ -203,7 +241,7 @@ def _mean_drift(dataset: Dataset, layout: _Layout) -> Array | None:
     if values is None:
         return None
     values = values[layout.finite][:, layout.turn][:, :, layout.influenced].real
-    return _finite(values, "mean_drift_force", layout.name)
+    return _finite(values, "mean_drift_force", layout.name, layout.omega[layout.finite])
 
 
 def _motions(dataset: Dataset, layout: _Layout) -> Array | None:
@@ -236,11 +274,13 @@ def _volume(dataset: Dataset, name: str, density: float) -> float | None:
     return volume if volume is None or volume > 0 else None
 
 
-def _finite(values: Array, variable: str, name: str) -> Array:
-    bad = int(np.count_nonzero(~np.isfinite(values)))
-    if bad:
+def _finite(values: Array, variable: str, name: str, omega: Array | None = None) -> Array:
+    """The values; raises DataError where some are not finite, with the frequencies of the first axis if given."""
+    bad = ~np.isfinite(values)
+    if bad.any():
+        at = "" if omega is None else f" at {_listed(omega[bad.reshape(omega.size, -1).any(axis=1)])}"
         raise DataError(
-            f"{name}: {variable} holds {bad} values that are not finite (NaN) at finite frequencies; "
+            f"{name}: {variable} holds {int(np.count_nonzero(bad))} values that are not finite (NaN){at}; "
             f"compute the missing problems before exporting"
         )
     return np.ascontiguousarray(values)

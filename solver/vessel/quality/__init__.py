@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..data import HydrodynamicData
-from .forces import force_checks, long_waves
+from .forces import force_checks, long_waves, phase
 from .judgement import Check
 from .radiation import causality, radiation_checks
 from .second import drift_checks
@@ -34,6 +34,7 @@ def quality(data: HydrodynamicData, low: float = 0.0, high: float = math.inf) ->
             causality(data, high),
             *force_checks(inside),
             long_waves(data),
+            phase(data),
             *drift_checks(data),
         )
         if data.content_hash:

@@ -1,4 +1,4 @@
-"""Wave forces: Haskind's relation, the long-wave limit, headings and frequencies (Q6)-(Q9)."""
+"""Wave forces: Haskind's relation, limit and phase of long waves, headings and frequencies (Q6)-(Q10), (Q13)."""
 
 from __future__ import annotations
 
@@ -10,12 +10,15 @@ import numpy as np
 from ...waves.dispersion import wave_number
 from ..data import HydrodynamicData
 from ..data.interpolate import TURN, spans_circle
+from ..scale import arm, floors
 from .judgement import Array, Check, judge, pair, percent, skipped
 from .radiation import off_the_line
 
 HASKIND = 0.05  # of the peak of the damping
 LONG_WAVE = 0.10  # of the hydrostatic stiffness
 LONG = 0.15  # wave number times the size of the hull: what counts as a long wave
+SHORT = 1.0  # wave number times the horizontal size: above it the phase of the force is no proof
+IN_PHASE = 0.5  # correlation of the horizontal force with the water's acceleration
 WIDE = math.radians(45.0)  # between headings
 ROUGH = 0.16  # of the peak: a value less the line between its neighbours; a line to each errs by a quarter of it
 
@@ -66,7 +69,7 @@ def _haskind(data: HydrodynamicData) -> Check:
         f"{whole[w, i]:.4g} from the wave forces: {percent(gap[w, i])} of the peak (threshold {percent(HASKIND)})"
     )
     bad = (
-        f"{data.name}: {text}; check ULEN, density and gravity, whether periods or frequencies are listed, "
+        f"{data.name}: {text}; check ULEN, density and gravity, whether periods, frequencies or wave numbers are listed, "
         f"and the reference point; or refine the mesh"
     )
     return judge("haskind", float(gap[w, i]), HASKIND, f"{data.name}: {text}", bad)
@@ -107,6 +110,39 @@ def long_waves(data: HydrodynamicData) -> Check:
     return judge("long-wave", gap, LONG_WAVE, f"{data.name}: {text}", bad)
 
 
+def phase(data: HydrodynamicData) -> Check:
+    """(Q13) The horizontal force of the longest wave against the acceleration of the water: phase and heading."""
+    name = "phase"
+    peak = np.abs(np.diagonal(data.added_mass, axis1=1, axis2=2)).max(axis=0)
+    sides, plane = float(max(peak[0], peak[1])), data.hydrostatic_stiffness
+    size = 3.0 * math.sqrt(float(peak[5]) / sides) if sides > 0 else 0.0
+    if plane is not None:
+        size = max(size, math.sqrt(max(float(plane[2, 2]), 0.0) / (data.density * data.gravity)))
+    k = float(np.asarray(wave_number(data.omega[:1], data.depth, data.gravity))[0])
+    if k * size > SHORT:
+        return skipped(
+            name, f"{data.name}: the lowest frequency, {data.omega[0]:.4g} rad/s, is no long wave for this hull"
+        )
+    force, heading = data.excitation[0, :, :2], data.headings
+    along = np.stack([np.cos(heading), np.sin(heading)], axis=1)
+    least = floors(np.abs(data.excitation[0]).max(axis=0), arm(data))[:2]
+    size2, share = np.sum(np.abs(force) ** 2, axis=0), np.sum(along**2, axis=0)
+    seen = (np.abs(force).max(axis=0) > least) & (share > 1e-9)
+    if not seen.any():
+        return skipped(name, f"{data.name}: there is no horizontal wave force at the lowest frequency")
+    each = np.sum(force.imag * along, axis=0)[seen] / np.sqrt(size2 * share)[seen]
+    value = float(np.sum(each * share[seen]) / np.sum(share[seen]))
+    text = (
+        f"the horizontal wave force at {data.omega[0]:.4g} rad/s and the acceleration of the water have a correlation of "
+        f"{value:.2g} over the headings (threshold {IN_PHASE:g})"
+    )
+    bad = (
+        f"{data.name}: {text}; either the forces are in the time factor e^(-iωt), and their conjugates are wanted, or headings "
+        f"are those that waves come from, and 180 deg have to be added"
+    )
+    return judge(name, -value, -IN_PHASE, f"{data.name}: {text}", bad)
+
+
 def _headings(data: HydrodynamicData) -> Check:
     """(Q8)"""
     degrees = np.degrees(data.headings)
@@ -129,8 +165,9 @@ def _excitation_spacing(data: HydrodynamicData) -> Check:
         return skipped(name, f"{data.name}: {data.omega.size} frequencies are too few to judge their spacing")
     worst = (0.0, 0, 0, 0)
     peak = np.abs(data.excitation).max(axis=(0, 1))
-    scale = np.maximum(peak, 0.01 * np.repeat(peak.reshape(2, 3).max(axis=1), 3))
-    for i in np.flatnonzero(peak > 0):
+    least = floors(peak, arm(data))
+    scale = np.maximum(np.maximum(peak, 0.01 * np.repeat(peak.reshape(2, 3).max(axis=1), 3)), least)
+    for i in np.flatnonzero(peak > least):
         for h in range(data.headings.size):
             values = data.excitation[:, h, i]
             gap = np.abs(off_the_line(data.omega, values)) * np.abs(values).max() / scale[i]
@@ -152,7 +189,8 @@ def _stiffness(data: HydrodynamicData) -> Check:
     if matrix is None:
         return skipped("stiffness", f"{data.name}: there is no hydrostatic stiffness; the case must give it")
     block = matrix[2:5, 2:5]
-    peak = np.sqrt(np.abs(np.diag(block)))
+    size = np.abs(np.diag(matrix))
+    peak = np.sqrt(np.maximum(size, floors(size, arm(data) ** 2)))[2:5]
     gap = np.abs(block - block.T) / np.maximum(np.outer(peak, peak), 1e-300)
     i, j = np.unravel_index(int(gap.argmax()), gap.shape)
     text = (

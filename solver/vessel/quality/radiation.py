@@ -8,6 +8,7 @@ import numpy as np
 
 from ..data import HydrodynamicData
 from ..radiation import Retardation, misfit, retardation
+from ..scale import arm, floors
 from .judgement import Array, Check, judge, pair, percent, skipped
 
 ASYMMETRY = 0.02  # of √(ii·jj)
@@ -29,6 +30,7 @@ def _reciprocity(data: HydrodynamicData) -> Check:
     worst, text = 0.0, "added mass and damping are symmetric"
     for what, table in (("added mass", data.added_mass), ("damping", data.damping)):
         peak = np.sqrt(np.abs(np.diagonal(table, axis1=1, axis2=2)).max(axis=0))
+        peak = np.maximum(peak, np.sqrt(floors(peak**2, arm(data) ** 2)))
         scale = np.maximum(np.outer(peak, peak), 1e-300)
         gap = np.abs(table - table.transpose(0, 2, 1)) / scale
         if gap.max() > worst:
@@ -50,11 +52,12 @@ def _reciprocity(data: HydrodynamicData) -> Check:
 def _passivity(data: HydrodynamicData) -> Check:
     """(Q2)"""
     damping = 0.5 * (data.damping + data.damping.transpose(0, 2, 1))
-    peak = np.sqrt(np.maximum(np.diagonal(damping, axis1=1, axis2=2).max(axis=0), 0.0))
-    if not np.any(peak > 0):
+    diagonal = np.diagonal(damping, axis1=1, axis2=2)
+    if not np.any(diagonal > 0):
         return skipped("damping", f"{data.name}: there is no damping on the diagonal at any frequency")
-    scaled = damping / np.maximum(np.outer(peak, peak), 1e-300 + 1e-12 * peak.max() ** 2)
-    scaled[:, peak == 0] = scaled[:, :, peak == 0] = 0.0
+    peak = np.abs(diagonal).max(axis=0)
+    size = np.sqrt(np.maximum(peak, floors(peak, arm(data) ** 2)))
+    scaled = damping / np.outer(size, size)
     least = np.linalg.eigvalsh(scaled)[:, 0]
     w = int(least.argmin())
     diagonal = np.diagonal(scaled, axis1=1, axis2=2)
@@ -101,12 +104,11 @@ def _shape(data: HydrodynamicData) -> Iterator[Check]:
         yield skipped("spacing", f"{data.name}: {data.omega.size} frequencies are too few to judge their spacing")
         yield skipped("spikes", f"{data.name}: {data.omega.size} frequencies are too few to find spikes")
         return
-    curves = [
-        (f"{what} of {pair(i, i)}", table[:, i, i])
-        for what, table in (("added mass", data.added_mass), ("damping", data.damping))
-        for i in range(6)
-        if np.abs(table[:, i, i]).max() > 0
-    ]
+    curves = []
+    for what, table in (("added mass", data.added_mass), ("damping", data.damping)):
+        peak = np.abs(np.diagonal(table, axis1=1, axis2=2)).max(axis=0)
+        for i in np.flatnonzero(peak > floors(peak, arm(data) ** 2)):
+            curves.append((f"{what} of {pair(i, i)}", table[:, i, i]))
     coarse, spike = (0.0, "", 0.0), (0.0, "", 0.0)
     for name, values in curves:
         gap = off_the_line(data.omega, values)

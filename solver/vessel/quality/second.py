@@ -8,6 +8,7 @@ import numpy as np
 
 from ..data import HydrodynamicData
 from ..data.interpolate import linear
+from ..scale import arm, floors
 from .judgement import Check, judge, pair, percent, skipped
 
 HERMITIAN = 1e-4
@@ -21,7 +22,7 @@ def drift_checks(data: HydrodynamicData) -> Iterator[Check]:
         yield skipped("qtf-diagonal", f"{data.name}: there is no full QTF")
         return
     size, gap = qtf.asymmetry()
-    scale = np.repeat(size.reshape(2, 3).max(axis=1), 3)
+    scale = np.maximum(np.repeat(size.reshape(2, 3).max(axis=1), 3), floors(size, arm(data)))
     share = gap / np.maximum(scale, 1e-300)
     dof = int(share.argmax())
     text = (
@@ -55,8 +56,9 @@ def _diagonal(data: HydrodynamicData) -> Check:
         ours = linear(omega, qtf.omega, diagonal[:, h])
         theirs = data.mean_drift[inside][:, own]
         peak = np.abs(theirs).max(axis=0)
-        scale = np.maximum(peak, 0.01 * np.repeat(peak.reshape(2, 3).max(axis=1), 3))
-        for dof in np.flatnonzero(peak > 0):
+        least = floors(peak, arm(data))
+        scale = np.maximum(np.maximum(peak, 0.01 * np.repeat(peak.reshape(2, 3).max(axis=1), 3)), least)
+        for dof in np.flatnonzero(peak > least):
             gap = np.abs(ours[:, dof] - theirs[:, dof]) / scale[dof]
             if gap.max() > worst[0]:
                 worst = (float(gap.max()), int(dof), float(omega[gap.argmax()]))

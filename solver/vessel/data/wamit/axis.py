@@ -9,11 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....outcome import DataError
+from ....waves.dispersion import wave_number
 from ..interpolate import TURN
 from .text import Array, Table
 
 CLEAR = 3.0  # the heave force at one end over that at the other, to tell periods from frequencies
 MAX_OMEGA, MAX_HEADINGS = 2000, 721
+LONG, APART = 0.95, 1.3  # heave force of a long wave over that of the longest; ratio of two first columns to compare
 SAME = 2e-5  # of a frequency or (in rad) of a heading: what files of six printed digits differ by
 
 
@@ -80,6 +82,46 @@ def first_listed(column: Array, printed: Array) -> Array:
     return np.isin(back, list(chosen.values()))
 
 
+def first_of_the_turn(
+    table: Table, column: Array, angles: tuple[int, ...], keys: tuple[int, ...], values: tuple[int, ...]
+) -> Array:
+    """Rows to keep when one direction is listed in two ways, as -180 and 180: those of the first, a mask.
+
+    column : direction of each row, or of each row and `angles` column, (R,) or (R, A). Rows are compared with those of
+    the same `keys`, the mode last, and direction, in whatever order they are. Raises DataError where their `values` differ.
+    """
+    printed = table.values[:, angles]
+    keep = first_listed(column.ravel(), printed.ravel()).reshape(printed.shape).all(axis=1)
+    if keep.all():
+        return keep
+    cells = np.column_stack([table.values[:, keys], column.reshape(printed.shape)])
+    _, cell = np.unique(cells, axis=0, return_inverse=True)
+    cell = cell.ravel()
+    kept = np.full(cell.max() + 1, -1)
+    kept[cell[keep]] = np.flatnonzero(keep)
+    others = np.flatnonzero(~keep & (kept[cell] >= 0))
+    if others.size < np.count_nonzero(~keep):
+        row = int(np.flatnonzero(~keep & (kept[cell] < 0))[0])
+        raise table.fault(row, f"heading {_angles(printed[row])} has an entry that the same direction lacks elsewhere")
+    twins = kept[cell[others]]
+    have, rotation = table.values[:, values], table.values[:, keys[-1]] > 3
+    size = np.array([np.abs(have[rotation == kind]).max(initial=0.0) for kind in (False, True)])[rotation.astype(int)]
+    gap = np.abs(have[others] - have[twins])
+    bad = np.flatnonzero((gap > 1e-3 * np.abs(have[twins]) + 1e-4 * size[others, None]).any(axis=1))
+    if bad.size:
+        row, twin = int(others[bad[0]]), int(twins[bad[0]])
+        raise table.fault(
+            row,
+            f"headings {_angles(printed[row])} and {_angles(printed[twin])} are one direction but their values differ "
+            f"(line {int(table.lines[twin])})",
+        )
+    return keep
+
+
+def _angles(printed: Array) -> str:
+    return ", ".join(f"{value:g}" for value in printed)
+
+
 def match(wanted: Array, have: Array) -> Array:
     """Index into `have` of each of `wanted`, -1 where none is within printing accuracy."""
     distance = np.abs(np.asarray(have)[None, :] - wanted[:, None])
@@ -104,6 +146,35 @@ def tell(force: Table | None, value_column: int, mode_column: int) -> tuple[bool
         return None, 1.0
     ratio = float(most / max(least, 1e-300))
     return (None if 1 / CLEAR < ratio < CLEAR else ratio > 1), ratio
+
+
+def wave_number_slope(
+    force: Table, columns: tuple[int, int], depth: float, gravity: float
+) -> tuple[float, float] | None:
+    """Whether a first column that rises with the frequency may hold wave numbers: two powers, or None when unclear.
+
+    The horizontal force of long waves grows with their wave number k (docs/theory-vessel.md, Q13). Returned are the power of
+    the first column with which it grows between two long waves, near 1 if the column holds k, and the power that k
+    has if the column holds frequencies, 2 in deep water. Long waves: heave forces that still are 0.95 of the longest's.
+    columns : those of the mode and of the modulus.
+    """
+    mode, modulus = columns
+    values = np.unique(force.values[force.values[:, 0] > 0, 0])
+    if values.size < 2:
+        return None
+    at = np.searchsorted(values, force.values[:, 0])
+    largest = np.zeros((values.size, 3))
+    for dof in range(3):
+        rows = (force.values[:, mode] == dof + 1) & (force.values[:, 0] > 0)
+        np.maximum.at(largest[:, dof], at[rows], np.abs(force.values[rows, modulus]))
+    side = np.hypot(largest[:, 0], largest[:, 1])
+    long = np.logical_and.accumulate(largest[:, 2] >= LONG * largest[0, 2])
+    last = int(np.flatnonzero(long)[-1])
+    ratio = values[last] / values[0]
+    if ratio < APART or not side[0] > 0 or not side[last] > 0:
+        return None
+    k = np.asarray(wave_number(values[[0, last]], depth, gravity))
+    return tuple(float(np.log(pair[1] / pair[0]) / np.log(ratio)) for pair in (side[[0, last]], k))  # type: ignore[return-value]
 
 
 def span(omega: Array) -> str:

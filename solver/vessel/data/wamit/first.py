@@ -8,7 +8,7 @@ import numpy as np
 
 from ....case.quantities import DOF
 from ....outcome import DataError
-from .axis import Frequencies, first_listed, frequencies, headings, match, shown, span
+from .axis import Frequencies, first_of_the_turn, frequencies, headings, match, shown, span
 from .text import Array, Table, magnitude_agrees, place, whole
 
 ROTATION = np.array([0, 0, 0, 1, 1, 1])
@@ -107,7 +107,7 @@ def read_force(table: Table, periods: bool, factor: Array, omega: Array, modes: 
     _limits(table, axis)
     where = positions(table, axis, omega)
     angles, column = np.unique(beta, return_inverse=True)
-    keep = _first_of_the_turn(table, column)
+    keep = first_of_the_turn(table, column, (1,), (0, 2), (5, 6))
     cell = (where[axis.column] * angles.size + column) * 6 + mode
     kept = Table(table.name, table.values[keep], table.lines[keep])
     rows = place(kept, cell[keep], (omega.size, angles.size, 6))
@@ -144,22 +144,6 @@ def positions(table: Table, axis: Frequencies, omega: Array) -> Array:
             f"{omega.size}, the last line is {int(table.lines[-1])}); the file is cut off or of another run"
         )
     return where
-
-
-def _first_of_the_turn(table: Table, column: Array) -> Array:
-    """Rows to keep when one direction is listed twice, as -180 and 180: those of the first. Raises when they differ."""
-    printed = table.values[:, 1]
-    keep = first_listed(column, printed)
-    for other in np.unique(printed[~keep]):
-        twin = printed[keep & (column == column[printed == other][0])][0]
-        a, b = table.values[printed == other], table.values[printed == twin]
-        same = a.shape == b.shape and bool(
-            np.allclose(a[:, 5:7], b[:, 5:7], rtol=1e-3, atol=1e-4 * np.abs(b[:, 3]).max())
-        )
-        if not same:
-            row = int(np.flatnonzero(printed == other)[0])
-            raise table.fault(row, f"headings {other:g} and {twin:g} are one direction but their values differ")
-    return keep
 
 
 def read_stiffness(table: Table, scale: Scale) -> tuple[Array, tuple[str, ...]]:

@@ -15,13 +15,15 @@ from ....case.vessel import WamitFiles
 from ....outcome import DataError
 from ..hydrodynamics import HydrodynamicData
 from ..qtf import QTF
-from .axis import CLEAR, span, tell
+from .axis import CLEAR, span, tell, wave_number_slope
 from .first import FORCE, RADIATION, STIFFNESS, Radiation, Scale, read_force, read_radiation, read_stiffness
 from .second import DRIFT, PAIRS, pairs_are_periods, read_mean_drift, read_qtf
 from .text import Array, Table, read_table
 
 QTF_KINDS = (".12d", ".11d", ".10d")
 KINDS = (".1", ".2", ".3", ".4", ".8", ".9", *QTF_KINDS, ".hst")
+WAVE_NUMBERS = "(IPEROUT 3 and 4) are not read: write the files with IPEROUT 1 or 2"
+POWER = 0.35  # nearer to 1 than this, and farther from that of frequencies: wave numbers
 DIFFERENT = 0.02  # of the peak: above it .2 and .3 are said to differ
 
 
@@ -55,13 +57,14 @@ def read_wamit(files: Mapping[str, bytes], options: WamitFiles) -> HydrodynamicD
 
     options : what files cannot say; density and gravity must be given. Raises DataError, naming file and line.
     """
-    kinds = _by_kind(files)
+    kinds, empty = _by_kind(files, options)
     missing = lacking(kinds, options)
     if missing:
         raise DataError(
             f"{_names(files)}: {missing[0][1]} (vessel.hydrodynamics.wamit.{missing[0][0]}, or with the upload)"
         )
-    found = _Set(kinds, options, _scale(options), [], [])
+    said = [f"{name}: the file is empty and is left out" for name in empty]
+    found = _Set(kinds, options, _scale(options), said, [])
     radiation_table, force_kind = found.table(".1", RADIATION, 1), found.first(".3", ".2")
     if radiation_table is None or force_kind is None:
         raise DataError(
@@ -105,18 +108,26 @@ def read_wamit(files: Mapping[str, bytes], options: WamitFiles) -> HydrodynamicD
     )
 
 
-def _by_kind(files: Mapping[str, bytes]) -> dict[str, tuple[str, bytes]]:
+def _by_kind(files: Mapping[str, bytes], options: WamitFiles) -> tuple[dict[str, tuple[str, bytes]], list[str]]:
+    """Files by kind, and the names of empty ones that the set can do without. Raises DataError for others."""
     result: dict[str, tuple[str, bytes]] = {}
+    empty = []
     for name, payload in files.items():
         kind = kind_of(name)
         if kind is None:
             continue
         if kind in result:
             raise DataError(f"{name}: there is another {kind} file, {result[kind][0]}; give the files of one run")
-        if not payload.strip():
+        if payload.strip():
+            result[kind] = (name, payload)
+        elif kind in (".1", options.drift):
             raise DataError(f"{name}: the file is empty")
-        result[kind] = (name, payload)
-    return result
+        else:
+            empty.append(name)
+    forces = [name for name in empty if kind_of(name) in (".2", ".3")]
+    if forces and not {".2", ".3"} & set(result):
+        raise DataError(f"{forces[0]}: the file is empty")
+    return result, empty
 
 
 def lacking(kinds: Collection[str], options: WamitFiles) -> list[tuple[str, str]]:
@@ -155,8 +166,11 @@ def _periods(found: _Set, force: Table) -> bool:
             raise DataError(
                 f"{force.name}: the first column may hold periods or frequencies; the heave force at its greatest "
                 f"value is {ratio:.3g} of that at its least (above {CLEAR:g}: periods, below 1/{CLEAR:g}: "
-                f"frequencies); give first_column: periods or frequencies"
+                f"frequencies); give first_column: periods or frequencies; wave numbers {WAVE_NUMBERS}"
             )
+        doubt = None if told else _wave_numbers(found, force)
+        if doubt is not None:
+            raise DataError(f"{doubt}; or give first_column: frequencies if they are")
         found.assumed.append(
             f"first column: {'periods' if told else 'frequencies'}, as the heave force at its greatest value is "
             f"{ratio:.3g} times that at its least"
@@ -167,7 +181,21 @@ def _periods(found: _Set, force: Table) -> bool:
             f"{force.name}: read with first_column: {asked}, but the heave force at the greatest value of the column is "
             f"{ratio:.3g} times that at the least, and long waves have the larger; check first_column"
         )
+    elif asked == "frequencies" and (doubt := _wave_numbers(found, force)) is not None:
+        found.warnings.append(doubt)
     return asked == "periods"
+
+
+def _wave_numbers(found: _Set, force: Table) -> str | None:
+    """A sentence where the horizontal force of long waves grows with the first column, not with its square (Q13)."""
+    depth = math.inf if found.options.depth is None else float(found.options.depth)
+    powers = wave_number_slope(force, (2, 3), depth, found.scale.gravity)
+    if powers is None or abs(powers[0] - 1.0) > POWER or powers[0] > powers[1] - POWER:
+        return None
+    return (
+        f"{force.name}: the first column looks like wave numbers: the horizontal force of long waves grows with its "
+        f"power {powers[0]:.2f}, where frequencies would give {powers[1]:.2f}; wave numbers {WAVE_NUMBERS}"
+    )
 
 
 def _compare_haskind(
@@ -183,7 +211,8 @@ def _compare_haskind(
         found.warnings.append(f"{table.name}: its headings are not those of the .3 file; it is not compared")
         return
     peak = np.abs(excitation).max(axis=(0, 1))
-    share = np.abs(other - excitation).max(axis=(0, 1)) / np.maximum(peak, 1e-6 * peak.max())
+    scale = np.maximum(peak, 0.01 * np.repeat(peak.reshape(2, 3).max(axis=1), 3))
+    share = np.abs(other - excitation).max(axis=(0, 1)) / np.maximum(scale, 1e-6 * peak.max())
     if share.max() > DIFFERENT:
         found.warnings.append(
             f"{table.name}: forces by Haskind's relation differ from those by diffraction by up to "
@@ -270,7 +299,7 @@ def manifest_hash(files: Mapping[str, bytes], options: WamitFiles) -> str:
 
 def _provenance(files: Mapping[str, bytes], found: _Set, periods: bool, drift: str | None) -> dict[str, Any]:
     told = manifest(files, found.options)
-    used = {".1", found.first(".3", ".2"), ".4", drift, found.first(*QTF_KINDS), ".hst"}
+    used = {".1", found.first(".3", ".2"), ".4", drift, found.first(*QTF_KINDS), ".hst"} & set(found.files)
     return {
         "format": "WAMIT",
         "files": [

@@ -7,7 +7,7 @@ import numpy as np
 from ....case.quantities import DOF
 from ....outcome import DataError
 from ..qtf import HERMITIAN, QTF
-from .axis import Frequencies, first_listed, frequencies, headings, match, shown, span
+from .axis import Frequencies, first_of_the_turn, frequencies, headings, match, shown, span
 from .first import positions
 from .text import Array, Table, magnitude_agrees, place, whole
 
@@ -36,7 +36,7 @@ def read_mean_drift(table: Table, periods: bool, factor: Array, omega: Array) ->
         raise table.fault(0, "the first column holds 0 or -1; the mean drift exists at finite frequencies only")
     where = positions(table, axis, omega)
     angles, column = np.unique(beta, return_inverse=True)
-    first = first_listed(column, table.values[:, 1])
+    first = first_of_the_turn(table, column, (1,), (0, 3), (6, 7))
     kept = Table(table.name, table.values[first], table.lines[first])
     cell = (where[axis.column] * angles.size + column) * 6 + mode
     rows = place(kept, cell[first], (omega.size, angles.size, 6))
@@ -78,9 +78,9 @@ def read_qtf(table: Table, periods: bool, conjugate: bool, factor: Array) -> QTF
     the diagonal are there (a computation of small differences only), else the file is refused as cut off.
     """
     magnitude_agrees(table, 5, 7, 8)
-    beta = np.concatenate([headings(table, 2), headings(table, 3)])
+    beta = np.column_stack([headings(table, 2), headings(table, 3)])
     _, column = np.unique(beta, return_inverse=True)
-    listed = first_listed(column, table.values[:, 2:4].T.ravel()).reshape(2, -1).all(axis=0)
+    listed = first_of_the_turn(table, column.reshape(beta.shape), (2, 3), (0, 1, 4), (7, 8))
     table = Table(table.name, table.values[listed], table.lines[listed])
     n = len(table.lines)
     both = Table(table.name, np.concatenate([table.values[:, [0]], table.values[:, [1]]]), np.tile(table.lines, 2))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from .lifeline import hold_on
+from .lifeline import Pulse, hold_on
 
 TURN = 0.0005
 """Seconds a thread may compute before another gets the interpreter. With Python's 0.005 the request that writes a
@@ -22,6 +22,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def run_api(options: argparse.Namespace) -> int:
+    import faulthandler
     import gc
     import socket
     import sys
@@ -34,6 +35,8 @@ def run_api(options: argparse.Namespace) -> int:
     from .serve import compose_app
 
     hold_on()
+    pulse = Pulse()
+    faulthandler.enable()  # the supervisor ends a process that hangs by SIGABRT, and the log tells where it hung
     sys.setswitchinterval(TURN)
     gc.disable()
     settings = Settings.from_env()
@@ -50,5 +53,12 @@ def run_api(options: argparse.Namespace) -> int:
     gc.freeze()  # what is here now stays: to look it through again and again would stop all answers for 0.1 s each time
     gc.set_threshold(10_000, 10, 10)
     gc.enable()
-    uvicorn.Server(config).run(sockets=[socket.socket(fileno=options.fd)])
+
+    class Server(uvicorn.Server):
+        async def on_tick(self, counter: int) -> bool:
+            """Ten times a second, by the event loop that answers the requests."""
+            pulse.beat()
+            return await super().on_tick(counter)
+
+    Server(config).run(sockets=[socket.socket(fileno=options.fd)])
     return 0

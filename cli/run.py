@@ -104,9 +104,9 @@ def _solve(case: Case, base: Path, quiet: bool) -> Result:
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
     from solver.check import check
-    from solver.vessel.data import FileSource
+    from store.reading import IsolatedFiles
 
-    source = FileSource(base)
+    source = IsolatedFiles(base)
     check(case, source)
     console = Console(stderr=True)
     if not quiet and console.is_terminal:

@@ -10,6 +10,7 @@ from fastapi.security import APIKeyCookie, HTTPBearer
 from starlette.types import ASGIApp
 from starlette_compress import CompressMiddleware
 
+from store import isolation
 from store.database import Database
 from store.doorbell import Doorbell
 from store.reconcile import Reconciler
@@ -45,6 +46,8 @@ from .routes import (
 from .routes.common import problems
 
 BASE = "/api/v1"
+READERS = tuple(f"api.services.{name}" for name in ("bundle_check", "data_reading", "mesh_reading"))
+"""Called in child processes (store/isolation), and loaded before the first."""
 # for the OpenAPI description only: api/doorkeeper.py reads them
 BEARER = HTTPBearer(auto_error=False, scheme_name="key", description="an API key, sdk_…")
 SESSION = APIKeyCookie(
@@ -70,6 +73,7 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        isolation.warm_up(*READERS)
         reconciler = Reconciler(context.database, context.doorbell, settings) if reconcile else None
         if reconciler:
             reconciler.start()

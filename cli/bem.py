@@ -58,12 +58,14 @@ def _made(args: argparse.Namespace) -> Made | None:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-    from solver.bem import load_job, prepare
+    from solver.bem import load_job
     from solver.bem.job import check, compute, estimate, wet
     from solver.bem.quality import doubts, measures
+    from store.reading import read_hull
 
     job = load_job(_read(args.job))
-    hull = prepare(job, lambda reference: (_read(args.job.parent / reference), Path(reference).name))
+    reference = job.geometry.mesh
+    hull = read_hull(job, None if reference is None else (_read(args.job.parent / reference), Path(reference).name))
     shape = wet(job, hull)
     check(job, hull, shape, args.memory)
     said = [doubt.message for doubt in doubts(hull, job, measures(hull, job))]

@@ -54,9 +54,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def _opened(args: argparse.Namespace) -> HydrodynamicData:
-    from solver.vessel.data import FileSource
+    from store.reading import IsolatedFiles
 
-    return FileSource(Path.cwd()).open(str(args.source), _conventions(args))
+    return IsolatedFiles(Path.cwd()).open(str(args.source), _conventions(args))
 
 
 def _conventions(args: argparse.Namespace) -> WamitFiles | None:

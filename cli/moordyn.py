@@ -41,18 +41,18 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def _read(args: argparse.Namespace) -> int:
-    from solver.io.moordyn import read_deck
     from solver.io.moordyn.deck import MAX_BYTES
     from solver.outcome import CaseError
+    from store.reading import read_deck
 
     try:
         base = _content(args.vessel, MAX_BYTES) if args.vessel else None
         found = read_deck(_content(args.source, MAX_BYTES), base, pinned=args.pinned)
-        _put(args.output, found.yaml)
+        _put(args.output, found["yaml"])
     except CaseError as error:
         return _wrong(args.source, error)
-    _tell(found.report)
-    for fault in found.errors:
+    print(found["comment"], end="", file=sys.stderr)
+    for fault in found["errors"]:
         print(f"to be filled in: {fault}", file=sys.stderr)
     return DONE
 
@@ -87,9 +87,9 @@ def _placed(case: Case, base: Path) -> Mapping[str, Placed] | None:
     from solver.io.moordyn import Placed
     from solver.outcome import NotConverged
     from solver.run import run, select
-    from solver.vessel.data import FileSource
+    from store.reading import IsolatedFiles
 
-    summary = run(select(case, ("statics",)), FileSource(base)).summary
+    summary = run(select(case, ("statics",)), IsolatedFiles(base)).summary
     if "statics" not in summary:
         raise NotConverged("statics", summary["failures"]["statics"], "")
     return Placed.of(summary)

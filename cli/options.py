@@ -12,6 +12,8 @@ from pathlib import Path
 
 from store.settings import Settings, SettingsError
 
+OPEN_FILES = 65_536
+
 
 class RefusedError(Exception):
     """The command cannot be carried out; the text is one sentence with a remedy."""
@@ -42,6 +44,21 @@ def read_settings(data_dir: Path | None, extra: Mapping[str, str] | None = None)
         return Settings.from_env(environ)
     except SettingsError as error:
         raise RefusedError(str(error)) from None
+
+
+def raise_open_files() -> int:
+    """Allow this process as many open files as the system lets it; the number."""
+    import resource
+
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    wanted = OPEN_FILES if hard == resource.RLIM_INFINITY else min(hard, OPEN_FILES)
+    if soft == resource.RLIM_INFINITY or soft >= wanted:
+        return wanted
+    try:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
+    except (OSError, ValueError):  # some systems have a lower bound of their own
+        return soft
+    return wanted
 
 
 def is_loopback(host: str) -> bool:

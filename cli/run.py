@@ -142,12 +142,12 @@ def _checked(args: argparse.Namespace) -> tuple[Case, Wanted | None, DataSource,
     """The case with the command line's changes, checked with its data, and the warnings. Raises CaseError with all faults."""
     from solver.check import examine
     from solver.outcome import CaseError
-    from solver.vessel.data import FileSource
+    from store.reading import IsolatedFiles
 
     from .results import wanted_of
 
     reading, errors = _read(args)
-    source, wanted = FileSource(args.case.resolve().parent), None
+    source, wanted = IsolatedFiles(args.case.resolve().parent), None
     warnings: list[str] = []
     if reading.case is not None:
         reading.case, wrong = _only(reading.case, args.only)

@@ -15,6 +15,8 @@ from .options import RefusedError, add_data_dir, bind, is_loopback, read_setting
 from .supervisor import Child, Supervisor
 
 MOST_PROCESSES = 64
+API_SILENCE, WORKER_SILENCE = 20.0, 120.0
+"""Seconds without a sign of life after which the supervisor replaces a process; a worker may be compiling."""
 COUNTS = "PROMETHEUS_MULTIPROC_DIR"
 """Prometheus' own name for it."""
 NO_LOGIN = (
@@ -134,14 +136,14 @@ def _setup_link(settings: Settings, url: str) -> str:
 
 def _children(options: argparse.Namespace, descriptor: int, port: int) -> list[Child]:
     api = ["api", "--fd", str(descriptor), "--port", str(port)] + (["--no-pages"] if options.no_pages else [])
-    children = [Child("api", api, (descriptor,))]
+    children = [Child("api", api, (descriptor,), silence=API_SILENCE)]
     for number in range(2, options.api_processes + 1):
-        children.append(Child(f"api-{number}", [*api, "--beside"], (descriptor,)))
+        children.append(Child(f"api-{number}", [*api, "--beside"], (descriptor,), silence=API_SILENCE))
     if options.workers > 0:
-        children.append(Child("worker", ["worker", "--concurrency", str(options.workers)]))
-        children.append(Child("interactive", ["worker", "--queue", "interactive"]))
+        children.append(Child("worker", ["worker", "--concurrency", str(options.workers)], silence=WORKER_SILENCE))
+        children.append(Child("interactive", ["worker", "--queue", "interactive"], silence=WORKER_SILENCE))
         if importlib.util.find_spec("capytaine"):  # hydrodynamic jobs take long: in a process of their own
-            children.append(Child("hydrodynamics", ["worker", "--queue", "hydrodynamics"]))
+            children.append(Child("hydrodynamics", ["worker", "--queue", "hydrodynamics"], silence=WORKER_SILENCE))
     return children
 
 

@@ -12,15 +12,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType
-from typing import IO
 
 from . import lifeline
+from .log_files import LogFile
 from .options import say
 
 GRACE_SECONDS = 8.0
+ABORT_SECONDS = 0.5
 FIRST_PAUSE, LONGEST_PAUSE = 0.5, 15.0
 STEADY_SECONDS = 30.0
-LOG_BYTES = 5_000_000
+START_SECONDS = 180.0
+"""How long a child may take until its first sign of life."""
 
 
 @dataclass
@@ -34,6 +36,11 @@ class Child:
     started_at: float = 0.0
     pause: float = FIRST_PAUSE
     due_at: float = field(default=0.0)
+    silence: float | None = None
+    """Seconds without a sign of life after which it is replaced; None: it gives none."""
+    pulse: int = -1
+    heard_at: float = 0.0
+    heard: bool = False
 
 
 class Supervisor:
@@ -46,6 +53,7 @@ class Supervisor:
         root = str(Path(__file__).resolve().parent.parent)  # so that children find the same code, installed or not
         paths = [root, *filter(None, self._environment.get("PYTHONPATH", "").split(os.pathsep))]
         self._environment["PYTHONPATH"] = os.pathsep.join(dict.fromkeys(paths))
+        self._logs: dict[str, LogFile] = {}
         self.ending = False
 
     def start(self) -> None:
@@ -62,11 +70,27 @@ class Supervisor:
                 if now >= child.due_at and not self.ending:
                     self._launch(child)
             elif (code := child.process.poll()) is not None:
-                self._bury(child)
-                steady = now - child.started_at > STEADY_SECONDS
-                child.pause = FIRST_PAUSE if steady else min(2 * child.pause, LONGEST_PAUSE)
-                child.due_at = now + child.pause
-                say(f"slowdrift: {child.name} ended ({_cause(code)}); starting it again in {child.pause:g} s")
+                self._replace(child, now, f"ended ({_cause(code)})")
+            elif self._silent(child, now):
+                _send(child, signal.SIGABRT)  # it writes where it hangs into its log (faulthandler)
+                time.sleep(ABORT_SECONDS)
+                self._replace(child, now, f"gave no sign of life for {now - child.heard_at:.0f} s")
+
+    def _replace(self, child: Child, now: float, reason: str) -> None:
+        self._bury(child)
+        steady = now - child.started_at > STEADY_SECONDS
+        child.pause = FIRST_PAUSE if steady else min(2 * child.pause, LONGEST_PAUSE)
+        child.due_at = now + child.pause
+        say(f"slowdrift: {child.name} {reason}; starting it again in {child.pause:g} s")
+
+    def _silent(self, child: Child, now: float) -> bool:
+        """Whether it has to be taken for hanging."""
+        if child.silence is None:
+            return False
+        with contextlib.suppress(BlockingIOError):
+            if os.read(child.pulse, 4096):
+                child.heard_at, child.heard = now, True
+        return now - child.heard_at > (child.silence if child.heard else max(child.silence, START_SECONDS))
 
     def run(self) -> None:
         while not self.ending:
@@ -92,17 +116,25 @@ class Supervisor:
 
     def _launch(self, child: Child) -> None:
         command = [sys.executable, "-P", "-m", "cli.main", *child.arguments]
-        with self._log(child.name) as log:
+        output = self._output(child.name)
+        child.pulse, pulse = os.pipe()
+        os.set_blocking(child.pulse, False)
+        try:
             child.process = subprocess.Popen(
                 command,
-                env=self._environment,
+                env=self._environment | {lifeline.PULSE: str(pulse)},
                 stdin=subprocess.DEVNULL,
-                stdout=log,
-                stderr=log,
-                pass_fds=(self._read, *child.descriptors),
+                stdout=output,
+                stderr=output,
+                pass_fds=(self._read, pulse, *child.descriptors),
                 start_new_session=True,
             )
-        child.started_at = time.monotonic()
+        finally:
+            os.close(pulse)
+            if output is not None:
+                os.close(output)
+        child.started_at = child.heard_at = time.monotonic()
+        child.heard = False
 
     def _bury(self, child: Child) -> None:
         """Whatever a child has left of its group goes with it."""
@@ -112,21 +144,15 @@ class Supervisor:
             os.killpg(child.process.pid, signal.SIGKILL)
         child.process.wait()
         child.process = None
+        os.close(child.pulse)
 
-    @contextlib.contextmanager
-    def _log(self, name: str):  # type: ignore[no-untyped-def]
-        file: IO[bytes] | None = None
-        if self._log_dir is not None:
-            self._log_dir.mkdir(parents=True, exist_ok=True)
-            path = self._log_dir / f"{name}.log"
-            if path.exists() and path.stat().st_size > LOG_BYTES:
-                path.replace(path.with_suffix(".log.1"))
-            file = path.open("ab")
-        try:
-            yield file
-        finally:
-            if file is not None:
-                file.close()
+    def _output(self, name: str) -> int | None:
+        """Where a child writes: a pipe into its log file, or None for this process's own output."""
+        if self._log_dir is None:
+            return None
+        read, write = os.pipe()
+        self._logs.setdefault(name, LogFile(self._log_dir / f"{name}.log")).copy_from(read)
+        return write
 
     def _on_signal(self, _: int, __: FrameType | None) -> None:
         self.ending = True

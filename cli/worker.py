@@ -7,7 +7,7 @@ import os
 
 from store.settings import Settings
 
-from .lifeline import hold_on
+from .lifeline import Pulse, hold_on
 from .options import RefusedError, add_data_dir, read_settings, refuse
 
 
@@ -33,6 +33,7 @@ def work(options: argparse.Namespace) -> int:
         return check(settings)
     os.environ.update(settings.as_env())  # the Celery app reads them when it is imported
     hold_on()
+    Pulse().keep_beating()
     from worker.main import run_worker
 
     run_worker(options.queue, max(1, options.concurrency))

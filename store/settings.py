@@ -74,6 +74,10 @@ class Settings(BaseModel):
     """Where people reach the service, for links and secure cookies; empty: as the request came in."""
     rate_per_minute: int = Field(6000, ge=0)
     """Requests of one key, session or (of strangers) address in a minute; 0: any number."""
+    max_connections: int = Field(5000, ge=10)
+    """Open connections of one API process; fewer where the system allows fewer open files."""
+    max_connections_per_address: int = Field(500, ge=0)
+    """Of them from one address; 0: any number. This machine and trusted proxies are not counted."""
     retention_days: float = Field(0.0, ge=0)
     """Ended runs older than this are deleted unless they are pinned; 0: none ever."""
     metrics_token: str = Field("", repr=False)

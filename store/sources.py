@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
+from collections.abc import Callable
 
 from solver.case.vessel import WamitFiles
 from solver.outcome import DataError
@@ -17,10 +18,18 @@ _read: OrderedDict[str, HydrodynamicData] = OrderedDict()
 _lock = threading.Lock()
 
 
-class PinnedSource:
-    """One data set under whatever reference the case has for it: the version that was chosen when the run was made."""
+Reader = Callable[[bytes, str, WamitFiles | None], HydrodynamicData]
 
-    def __init__(self, row: DataSet | None):
+
+class PinnedSource:
+    """One data set under whatever reference the case has for it: the version that was chosen when the run was made.
+
+    `reader`: store.reading.read_bytes in a process that answers requests; a worker is itself a process that is ended
+    when it takes too long (docs/decisions/0048-limits-of-a-task.md), and reads in itself.
+    """
+
+    def __init__(self, row: DataSet | None, reader: Reader = hydrodynamics.read_bytes):
+        self._reader = reader
         self._found = None if row is None else (row.content_hash, row.filename, row.payload)
 
     def open(self, reference: str, wamit: WamitFiles | None = None) -> HydrodynamicData:
@@ -28,12 +37,12 @@ class PinnedSource:
             raise DataError(f"There is no data set {reference[:100]!r} here; upload it first (POST /data-sets).")
         content_hash, filename, payload = self._found
         if wamit is not None:  # the upload's conventions hold; a case that states others is refused
-            return hydrodynamics.read_bytes(payload, filename, wamit)
+            return self._reader(payload, filename, wamit)
         with _lock:
             if content_hash in _read:
                 _read.move_to_end(content_hash)
                 return _read[content_hash]
-        made = hydrodynamics.read_bytes(payload, filename)
+        made = self._reader(payload, filename, None)
         with _lock:
             _read[content_hash] = made
             while len(_read) > KEEP or (len(_read) > 1 and sum(data.nbytes for data in _read.values()) > KEEP_BYTES):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import logging
 import os
@@ -93,8 +94,10 @@ def _kept(worker: Worker, ticket: Ticket) -> str:
         try:
             with Keeper(worker.database, ticket, worker.settings, worker.shutting_down, limits, worker.leave) as keeper:
                 return _attempt(worker, ticket, keeper)
-        except LostLeaseError as error:
-            log.warning("%s", error)
+        except (Lost, LostLeaseError) as error:
+            log.warning("The lease of this task ended before its work: %s", error)
+            with contextlib.suppress(OperationalError), worker.database.write() as session:
+                TaskRepository(session).lost_early(ticket, worker.settings.max_attempts)
             return "lost"
 
 
@@ -110,18 +113,16 @@ def _limits(worker: Worker, ticket: Ticket) -> Limits:
 def _attempt(worker: Worker, ticket: Ticket, keeper: Keeper) -> str:
     try:
         return _compute(worker, ticket, keeper)
-    except Lost:
-        return "lost"
     except Exceeded:
         return _fail(worker, ticket, keeper.reason)
     except Released:
         _persist(worker, lambda session: TaskRepository(session).release(ticket, keeper.checkpoint))
         return "released"
+    except (Lost, LostLeaseError):
+        raise
     except Cancelled:
         _persist(worker, lambda session: TaskRepository(session).give_up(ticket))
         return "cancelled"
-    except LostLeaseError:
-        raise
     except SlowdriftError as error:
         return _fail(worker, ticket, str(error))
     except MemoryError:

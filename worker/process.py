@@ -10,8 +10,10 @@ import resource
 import socket
 import threading
 import time
+import uuid
 from collections.abc import Iterator
 from pathlib import Path
+from typing import IO
 
 import psutil
 
@@ -64,25 +66,40 @@ def shutting_down() -> bool:
     return _flag[0] != 0
 
 
-def host_prefix() -> str:
-    return f"{socket.gethostname()}/"
+class Identity:
+    """Who a worker process is: a random id, and a file of that name that it keeps locked for as long as it lives.
+
+    Process numbers and host names will not do: containers have the same ones. A lock that can be had proves that its
+    process has ended; of a worker whose file is not in this folder nothing is known, and its lease decides.
+    """
+
+    def __init__(self, folder: Path):
+        self.id = uuid.uuid4().hex
+        self.name = f"{socket.gethostname()}/{os.getppid()}/{os.getpid()}/{self.id}"
+        """host/pid of the worker/pid of the child/id; all but the id only tells people where to look."""
+        self._file: IO[bytes] | None = None
+        with contextlib.suppress(OSError):  # without a lock it is never taken for dead before its lease is over
+            folder.mkdir(parents=True, exist_ok=True)
+            new = folder / f"{self.id}.new"
+            self._file = new.open("wb")
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            new.rename(folder / f"{self.id}.lock")
 
 
-def worker_name() -> str:
-    """host/pid of the worker/pid of the child."""
-    return f"{host_prefix()}{os.getppid()}/{os.getpid()}"
+def ended(folder: Path) -> dict[str, Path]:
+    """Ids of worker processes that have ended, and the files they had locked."""
+    found = {}
+    for path in folder.glob("*.lock"):
+        with contextlib.suppress(OSError), path.open("rb") as file:  # BlockingIOError: it lives
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            found[path.stem] = path
+    return found
 
 
-def is_dead(worker: str) -> bool:
-    """Whether a worker of this host, named as above, has no process any more."""
-    try:
-        pid = int(worker.rsplit("/", 1)[1])
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return True
-    except (ValueError, IndexError, PermissionError):
-        return False
-    return False
+def id_of(worker: str) -> str:
+    """The random id in a worker's name; empty in names of earlier versions."""
+    parts = worker.split("/")
+    return parts[3] if len(parts) == 4 else ""
 
 
 def die_with_parent(interval: float = 0.5) -> None:

@@ -65,8 +65,13 @@ def _solver() -> Any:
 
 
 @cache
+def _identity() -> process.Identity:
+    return process.Identity(settings.data_dir / "workers")
+
+
+@cache
 def _worker() -> Worker:
-    return Worker(_database(), _solver(), settings, process.worker_name(), process.shutting_down)
+    return Worker(_database(), _solver(), settings, _identity().name, process.shutting_down)
 
 
 @worker_shutting_down.connect
@@ -81,7 +86,7 @@ def _on_child_start(**_: Any) -> None:
     try:
         _clear_up_after_the_dead()
     except Exception:
-        log.exception("Could not look for tasks of workers that died on this host")
+        log.exception("Could not look for tasks of workers that ended")
     with process.one_at_a_time(settings.data_dir / "warm-up.lock"):  # the others then load what the first compiled
         warm_up = getattr(_solver(), "warm_up", None)
         if warm_up is not None:
@@ -90,15 +95,18 @@ def _on_child_start(**_: Any) -> None:
 
 def _clear_up_after_the_dead() -> None:
     """A child that takes the place of a killed one frees its task now, not when the lease runs out, and rings."""
+    ended = process.ended(settings.data_dir / "workers")
     with _database().read() as session:
-        held = RecoveryRepository(session).held_by(process.host_prefix())
-    dead = [(task_id, worker) for task_id, worker in held if process.is_dead(worker)]
+        held = RecoveryRepository(session).held()
+    dead = [(task_id, worker) for task_id, worker in held if process.id_of(worker) in ended]
     if dead:
         with _database().write() as session:
             RecoveryRepository(session).expire([task_id for task_id, _ in dead], {worker for _, worker in dead})
         for task_id, _ in dead:
             with _database().write() as session:
                 RecoveryRepository(session).settle_expired(task_id, settings.max_attempts, settings.lease_seconds)
+    for path in ended.values():
+        path.unlink(missing_ok=True)
     with _database().read() as session:
         _ring(RecoveryRepository(session).waiting())
 

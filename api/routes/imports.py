@@ -38,6 +38,7 @@ async def read_upload(request: Request, context: ContextDep) -> AsyncIterator[IO
                 raise CaseError([FieldError(("file",), f"has more than {limit} bytes, the most allowed")])
             spool.write(piece)
         spool.seek(0)
+        spool.rollover()  # a file of the system, which a child process can read
         yield spool  # type: ignore[misc]  # SpooledTemporaryFile is an IO[bytes] in all but name
 
 

@@ -17,6 +17,7 @@ from solver.outcome import CaseError, DataError, FieldError
 from store.effective import stored_case
 from store.errors import NotFoundError
 from store.models import CaseVersion, DataSet
+from store.reading import read_bytes
 from store.repositories import CaseRepository, DataSetRepository
 from store.repositories.cases import NewCase
 from store.scope import Scope
@@ -94,7 +95,7 @@ def examine(context: Context, scope: Scope, case: Case) -> tuple[tuple[str, ...]
     """Warnings, and the id of the data set the case refers to. Raises CaseError."""
     with context.database.read() as session:
         row = find_data(session, scope, case)
-        source = PinnedSource(row)
+        source = PinnedSource(row, read_bytes)
     try:
         return tuple(check(case, source)), None if row is None else row.id
     except DataError as error:

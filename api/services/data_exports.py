@@ -10,6 +10,7 @@ from solver.outcome import CaseError, DataError, FieldError
 from solver.vessel.data.bundle import pack
 from solver.vessel.data.layout import dump_netcdf
 from solver.vessel.data.wamit import conventions_of, write_wamit
+from store.reading import read_bytes
 from store.repositories import DataSetRepository
 from store.scope import Scope
 from store.sources import PinnedSource
@@ -33,7 +34,7 @@ def export(context: Context, scope: Scope, data_set_id: str, kind: Format, lengt
     """
     with context.database.read() as session:
         row = DataSetRepository(session, scope).get(data_set_id)
-        source, name = PinnedSource(row), row.name
+        source, name = PinnedSource(row, read_bytes), row.name
     stem = re.sub(r"[^A-Za-z0-9_-]", "_", re.sub(r"\.[A-Za-z0-9]{1,4}$", "", name))[:60] or "data"
     try:
         data = source.open(name)

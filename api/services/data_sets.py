@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-import threading
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,25 +9,18 @@ from pydantic import ValidationError
 
 from solver.case.vessel import WamitFiles
 from solver.outcome import CaseError, DataError, FieldError
-from solver.vessel import data as hydrodynamics
-from solver.vessel.data import HydrodynamicData, bundle
-from solver.vessel.data.wamit import kind_of, lacking
+from solver.vessel.data import HydrodynamicData
 from solver.vessel.quality import quality
+from store.isolation import Stopped, call
 from store.models import DataSet
+from store.reading import damaged, limits_for, read_bytes
 from store.repositories import DataSetRepository
 from store.scope import Scope
 from store.sources import PinnedSource
 
 from ..context import Context
 from ..schemas import DataSetDetail, DataSetInfo
-
-_reading = threading.BoundedSemaphore(2)  # uploads that are read at a time, each in some times its size of memory
-
-
-def harmless(name: str) -> str:
-    """The last part of a path, of plain characters only."""
-    last = re.split(r"[/\\]", name)[-1]
-    return re.sub(r"[^A-Za-z0-9._ ()+-]", "_", last).strip(" .")[:100]
+from .data_reading import harmless
 
 
 def add(
@@ -44,21 +35,17 @@ def add(
     if size > context.settings.max_data_bytes:
         raise _fault("file", f"{size} bytes; allowed: at most {context.settings.max_data_bytes}")
     options = conventions(form or {})
+    named = {harmless(key) or "data": payload for key, payload in files.items()}
     try:
-        with _reading:
-            return _read_and_save(context, scope, files, name, options)
+        read = call("api.services.data_reading:read_upload", named, options, limits=limits_for(size))
     except DataError as error:
         raise _fault("file", str(error)) from None
-
-
-def _read_and_save(
-    context: Context, scope: Scope, files: Mapping[str, bytes], name: str | None, options: WamitFiles | None
-) -> tuple[DataSet, bool]:
-    found = hydrodynamics.unpacked({harmless(key) or "data": payload for key, payload in files.items()})
-    data, filename, payload = _stored({harmless(key) or "data": part for key, part in found.items()}, options)
+    except Stopped as stopped:
+        raise _fault("file", damaged(", ".join(sorted(named)[:3]), stopped)) from None
+    filename, content_hash, payload, summary = read
     label = harmless(name or "") or filename
     with context.change() as unit:
-        return DataSetRepository(unit.session, scope).save(label, filename, data.content_hash, payload, data.describe())
+        return DataSetRepository(unit.session, scope).save(label, filename, content_hash, payload, summary)
 
 
 def conventions(form: Mapping[str, str | None]) -> WamitFiles | None:
@@ -90,22 +77,6 @@ def _number(text: str) -> float | str:
         return text
 
 
-def _stored(files: Mapping[str, bytes], options: WamitFiles | None) -> tuple[HydrodynamicData, str, bytes]:
-    """The data, and the name and bytes they are kept under: one file as it came, a set packed with its conventions."""
-    kinds = {kind for name, payload in files.items() if payload.strip() and (kind := kind_of(name)) is not None}
-    if not kinds:
-        data = hydrodynamics.read_files(files)
-        one = next(name for name in files if name == data.name)
-        return data, one, files[one]
-    known = bundle.conventions(files, "archive") or options or WamitFiles()
-    missing = lacking(kinds, known)
-    if missing:
-        raise CaseError([FieldError((field,), message) for field, message in missing])
-    data = hydrodynamics.read_files(files, options)
-    kept = {name: payload for name, payload in files.items() if kind_of(name)}
-    return data, f"{data.name}.zip", bundle.pack(kept, known)
-
-
 def info(row: DataSet) -> DataSetInfo:
     return DataSetInfo(
         id=row.id,
@@ -127,7 +98,7 @@ def opened(context: Context, scope: Scope, key: str) -> tuple[DataSet, Hydrodyna
     """A data set and what it holds."""
     with context.database.read() as session:
         row = DataSetRepository(session, scope).get(key)
-        source = PinnedSource(row)
+        source = PinnedSource(row, read_bytes)
     return row, source.open(row.name)
 
 

@@ -5,18 +5,15 @@ from __future__ import annotations
 import hashlib
 from typing import Any
 
-import numpy as np
-
-from solver.bem import Hull, HydrodynamicJob, parse_job, prepare
-from solver.bem.geometry import wetted
-from solver.bem.job import Estimate, check, estimate, wet
-from solver.bem.quality import doubts, measures, preview
-from solver.bem.read import MAX_BYTES, read_mesh
+from solver.bem import HydrodynamicJob, parse_job
+from solver.bem.read import MAX_BYTES
 from solver.case.text import MAX_BYTES as TEXT_BYTES
 from solver.case.text import read_text
 from solver.outcome import CaseError, DataError, FieldError
 from store.errors import NotFoundError
 from store.hydrodynamics import Mesh
+from store.isolation import Stopped, call
+from store.reading import HULL_SECONDS, damaged, limits_for
 from store.repositories.hydrodynamics import HydrodynamicsRepository, JobView, MeshRepository, NewJob
 from store.scope import Scope
 
@@ -26,6 +23,7 @@ from ..hydrodynamics_schemas import HydrodynamicInfo, MeshDetail, MeshInfo, Mesh
 from ..idempotency import Once
 from .data_sets import harmless
 
+READING = "api.services.mesh_reading"
 MESH = ("geometry", "mesh")
 
 
@@ -35,23 +33,25 @@ def upload(context: Context, scope: Scope, payload: bytes, filename: str, name: 
         raise _fault(("file",), f"more than {MAX_BYTES} bytes; allowed: at most {MAX_BYTES}")
     filename = harmless(filename) or "mesh"
     label = harmless(name or "") or filename
-    job = parse_job({"geometry": {"mesh": label}}, compute=False)
     try:
-        hull, kind = _standing(payload, filename)
+        found = _examined(payload, filename, label)
     except DataError as error:
         raise _fault(("file",), str(error)) from None
-    found = measures(hull, job)
-    summary = {"format": kind, "quality": found, "warnings": [item.as_dict() for item in doubts(hull, job, found)]}
+    shown = found.pop("preview")
     content_hash = hashlib.sha256(payload).hexdigest()
     with context.change() as unit:
-        row, made = MeshRepository(unit.session, scope).save(label, content_hash, payload, summary)
-    return MeshDetail(**mesh_info(row).model_dump(), preview=preview(hull)), made
+        row, made = MeshRepository(unit.session, scope).save(label, content_hash, payload, found)
+    return MeshDetail(**mesh_info(row).model_dump(), preview=shown), made
 
 
-def _standing(payload: bytes, filename: str) -> tuple[Hull, str]:
-    """The wetted part of a mesh where it stands."""
-    mesh, kind = read_mesh(payload, filename)
-    return wetted(mesh, kind, 1.0, np.zeros(3), filename), kind
+def _examined(payload: bytes, filename: str, label: str) -> dict[str, Any]:
+    """Raises DataError."""
+    limits = limits_for(len(payload), HULL_SECONDS)
+    try:
+        found: dict[str, Any] = call(f"{READING}:examine", payload, filename, label, limits=limits)
+    except Stopped as stopped:
+        raise DataError(damaged(filename, stopped)) from None
+    return found
 
 
 def show_mesh(context: Context, scope: Scope, mesh_id: str) -> MeshDetail:
@@ -59,7 +59,7 @@ def show_mesh(context: Context, scope: Scope, mesh_id: str) -> MeshDetail:
         repository = MeshRepository(session, scope)
         row = repository.find(repository.get(mesh_id).id)
         payload, info = row.payload, mesh_info(row)
-    return MeshDetail(**info.model_dump(), preview=preview(_standing(payload, info.name)[0]))
+    return MeshDetail(**info.model_dump(), preview=_examined(payload, info.name, info.name)["preview"])
 
 
 def mesh_info(row: Mesh) -> MeshInfo:
@@ -71,24 +71,15 @@ def mesh_info(row: Mesh) -> MeshInfo:
 def look(context: Context, scope: Scope, body: Body) -> MeshLook:
     """Quality and preview of the geometry of a job; nothing is stored."""
     job = parse_job(_data(body), compute=False)
-    hull, _ = _hull(context, scope, job)
-    found = measures(hull, job)
-    return MeshLook(
-        quality=found,
-        warnings=[item.as_dict() for item in doubts(hull, job, found)],
-        preview=preview(hull),
-        estimate=estimate(job, wet(job, hull)).as_dict(),
-    )
+    found, _ = _of_geometry(context, scope, "look", job)
+    return MeshLook(**found)
 
 
 def start(context: Context, scope: Scope, body: Body, once: Once) -> HydrodynamicInfo:
     """Check everything, then insert the run with its task and commit, then ring."""
     job = parse_job(_data(body))
-    hull, mesh = _hull(context, scope, job)
-    shape = wet(job, hull)
-    check(job, hull, shape, context.settings.bem_memory_mb)
-    needed = estimate(job, shape)
-    new = _new(job, hull, needed, mesh)
+    found, mesh = _of_geometry(context, scope, "needed", job, context.settings.bem_memory_mb)
+    new = _new(job, found, mesh)
     with context.change() as unit:
         repository = HydrodynamicsRepository(unit.session, scope)
 
@@ -100,16 +91,15 @@ def start(context: Context, scope: Scope, body: Body, once: Once) -> Hydrodynami
         return info(repository.job(once.make(unit.session, scope, make)))
 
 
-def _new(job: HydrodynamicJob, hull: Hull, needed: Estimate, mesh: Mesh | None) -> NewJob:
-    found = doubts(hull, job, measures(hull, job))
+def _new(job: HydrodynamicJob, found: dict[str, Any], mesh: Mesh | None) -> NewJob:
     return NewJob(
         name=job.name,
         spec=job.model_dump(mode="json", exclude_none=True),
         content_hash=job.content_hash("" if mesh is None else mesh.content_hash),
-        estimate=needed.as_dict(),
-        weight=needed.seconds,
+        estimate=found["estimate"],
+        weight=found["seconds"],
         mesh_id=None if mesh is None else mesh.id,
-        warnings=tuple(item.message for item in found),
+        warnings=tuple(found["warnings"]),
     )
 
 
@@ -121,23 +111,27 @@ def _data(body: Body) -> Any:
     return read_text(body.content)[0]
 
 
-def _hull(context: Context, scope: Scope, job: HydrodynamicJob) -> tuple[Hull, Mesh | None]:
-    found: list[Mesh] = []
-
-    def fetch(reference: str) -> tuple[bytes, str]:
+def _of_geometry(
+    context: Context, scope: Scope, function: str, job: HydrodynamicJob, *further: Any
+) -> tuple[dict[str, Any], Mesh | None]:
+    """What a function of mesh_reading says of a job, and the mesh the job refers to. Raises CaseError."""
+    mesh, content = None, None
+    if job.geometry.mesh is not None:
         with context.database.read() as session:
-            row = MeshRepository(session, scope).find(reference)
-            found.append(row)
-            return row.payload, row.name
-
+            try:
+                mesh = MeshRepository(session, scope).find(job.geometry.mesh)
+            except NotFoundError:
+                message = f"there is no mesh {job.geometry.mesh!r} here; upload it first (POST /hydrodynamics/meshes)"
+                raise _fault(MESH, message) from None
+            content = (mesh.payload, mesh.name)
+    limits = limits_for(0 if content is None else len(content[0]), HULL_SECONDS)
     try:
-        hull = prepare(job, fetch)
-    except NotFoundError:
-        message = f"there is no mesh {job.geometry.mesh!r} here; upload it first (POST /hydrodynamics/meshes)"
-        raise _fault(MESH, message) from None
+        found: dict[str, Any] = call(f"{READING}:{function}", job, content, *further, limits=limits)
     except DataError as error:
         raise _fault(MESH, str(error)) from None
-    return hull, found[0] if found else None
+    except Stopped as stopped:
+        raise _fault(MESH if mesh else ("geometry",), damaged(mesh.name if mesh else "geometry", stopped)) from None
+    return found, mesh
 
 
 def show(context: Context, scope: Scope, job_id: str) -> HydrodynamicInfo:

@@ -7,9 +7,10 @@ import json
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from solver.case.case import field_errors
-from solver.io.moordyn import Imported, Placed, Written, read_deck, write_deck
+from solver.io.moordyn import Placed, Written, write_deck
 from solver.outcome import CaseError, FieldError
 from store.errors import ConflictError
+from store.reading import read_deck
 from store.repositories import RunRepository
 from store.scope import Scope
 
@@ -31,24 +32,19 @@ class ImportRequest(BaseModel):
 def read(body: Body) -> ImportInfo:
     """Raises CaseError with lines of the deck."""
     if not body.is_json:
-        return _shown(read_deck(body.content))
+        return _read(body.content)
     try:
         request = ImportRequest.model_validate(read_json(body))
     except ValidationError as error:
         raise CaseError(field_errors(error)) from None
-    return _shown(read_deck(request.deck, request.case, request.name))
+    return _read(request.deck, request.case, request.name)
 
 
-def _shown(imported: Imported) -> ImportInfo:
-    case = imported.case
-    return ImportInfo(
-        complete=case is not None,
-        name=imported.data["name"],
-        yaml=imported.yaml,
-        case=None if case is None else json.loads(case.canonical()),
-        report=ImportReport(**imported.report.as_dict()),
-        errors=[FieldFault(**error.as_dict()) for error in imported.errors],
-    )
+def _read(deck: str | bytes, case: str | None = None, name: str | None = None) -> ImportInfo:
+    found = read_deck(deck, case, name)
+    errors = [FieldFault(**error.as_dict()) for error in found["errors"]]
+    report = ImportReport(**found["report"])
+    return ImportInfo(**{key: found[key] for key in ("complete", "name", "yaml", "case")}, report=report, errors=errors)
 
 
 def write(context: Context, scope: Scope, case_id: str, run_id: str | None) -> Written:

@@ -18,6 +18,7 @@ from solver.plan import plan
 from store.effective import chosen
 from store.models import ACTIVE, CANCELLED, FAILED, SUCCEEDED, DataSet, Study
 from store.pointers import replaced, value_at
+from store.reading import read_bytes
 from store.repositories import CaseRepository, RunRepository, StudyRepository
 from store.repositories.studies import StudyView, Variant
 from store.scope import Scope
@@ -144,7 +145,7 @@ class _Checker:
         if reference not in self._data:
             with self._context.database.read() as session:
                 row = find_data(session, self._scope, case)
-                self._data[reference] = row, PinnedSource(row)
+                self._data[reference] = row, PinnedSource(row, read_bytes)
         return self._data[reference]
 
 

@@ -79,11 +79,9 @@ class RecoveryRepository(TaskRepository):
         else:
             task.state, task.rung_at = QUEUED, 0.0
 
-    def held_by(self, prefix: str) -> list[tuple[str, str]]:
-        """(id, worker) of running tasks whose worker's name starts so."""
-        query = select(Task.id, Task.worker).where(
-            Task.state == RUNNING, Task.worker.startswith(prefix, autoescape=True)
-        )
+    def held(self) -> list[tuple[str, str]]:
+        """(id, worker) of all running tasks."""
+        query = select(Task.id, Task.worker).where(Task.state == RUNNING)
         return [(row.id, row.worker or "") for row in self.session.execute(query)]
 
     def expire(self, task_ids: Iterable[str], workers: Iterable[str]) -> None:

@@ -22,6 +22,8 @@ from ..models import CANCELLED, CANCELLING, FAILED, QUEUED, RUNNING, SUCCEEDED, 
 from ..sources import PinnedSource
 
 NEXT_TRIES = 5
+EARLY = 5
+"""Times max_attempts: how many attempts are made of a task whose workers lose their leases while they live."""
 
 
 @dataclass(frozen=True)
@@ -224,6 +226,18 @@ class TaskRepository:
             values["checkpoint"] = checkpoint
         self._fenced(ticket, values)
         return None
+
+    def lost_early(self, ticket: Ticket, max_attempts: int) -> None:
+        """The lease ended while its worker lived: an attempt that does not count. Called by that worker.
+
+        At most EARLY times max_attempts attempts are made, so that a task that stops its worker's heartbeat each time
+        ends at last.
+        """
+        again = (Task.attempt > ticket.attempt) | (Task.state == QUEUED)
+        live = Task.state.in_((QUEUED, RUNNING)) & (Task.attempt >= ticket.attempt) & again
+        few = Task.attempt < EARLY * max_attempts
+        query = update(Task).where(Task.id == ticket.task_id, live, few).values(releases=Task.releases + 1)
+        self.session.execute(query.execution_options(synchronize_session=False))
 
     # -- inside
 

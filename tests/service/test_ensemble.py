@@ -116,7 +116,7 @@ def _killed_in_the_middle(client: httpx.Client, settings: Settings, whole: Resul
     database = Database(settings.database)
     run_id = submit(client, _case())
     victim = _in_the_middle(database, run_id)
-    parent, child = (int(part) for part in victim.worker.split("/")[1:])
+    parent, child = (int(part) for part in victim.worker.split("/")[1:3])
     os.kill(parent if whole_worker else child, signal.SIGKILL)
     seen: list[float] = []
     while client.get(f"/api/v1/runs/{run_id}").json()["state"] not in FINAL:

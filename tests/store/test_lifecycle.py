@@ -260,3 +260,46 @@ def test_pages_and_versions(database: Database) -> None:
         first = cases.page(3, None)
         rest = cases.page(3, first[-1].id)
     assert [row.number for row in [*first, *rest]] == [5, 4, 3, 2, 1]
+
+
+def test_a_lease_that_ended_early_is_no_lost_attempt(
+    database: Database, make: Callable[..., tuple[str, list[str]]]
+) -> None:
+    """Three times with three attempts allowed: each worker lived, so the task is still to be had."""
+    _, (task,) = make(1)
+    for attempt in range(1, 15):
+        with database.write() as session:
+            ticket = TaskRepository(session).claim(task, f"host/1/{attempt}", 60, 3)
+        assert ticket is not None
+        assert ticket.attempt == attempt
+        with database.write() as session:
+            RecoveryRepository(session).expire([task], [f"host/1/{attempt}"])
+        with database.write() as session:
+            RecoveryRepository(session).settle_expired(task, 3)
+        with database.write() as session:
+            TaskRepository(session).lost_early(ticket, 3)
+    for attempt in (15, 16, 17):  # but not without end
+        with database.write() as session:
+            found = TaskRepository(session).claim(task, f"host/1/{attempt}", 60, 3)
+            assert found is not None
+        with database.write() as session:
+            RecoveryRepository(session).expire([task], [f"host/1/{attempt}"])
+        with database.write() as session:
+            RecoveryRepository(session).settle_expired(task, 3)
+        with database.write() as session:
+            TaskRepository(session).lost_early(found, 3)
+    with database.write() as session:
+        assert TaskRepository(session).claim(task, "host/1/18", 60, 3) is None
+
+
+def test_a_worker_that_still_has_its_lease_gains_nothing(
+    database: Database, make: Callable[..., tuple[str, list[str]]]
+) -> None:
+    _, (task,) = make(1)
+    with database.write() as session:
+        ticket = TaskRepository(session).claim(task, "host/1/1", 60, 1)
+        assert ticket is not None
+        TaskRepository(session).lost_early(ticket, 1)
+    with database.write() as session:
+        RecoveryRepository(session).expire([task], ["host/1/1"])
+        assert TaskRepository(session).claim(task, "host/1/2", 60, 1) is None

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from .case import Case
+from .case.catalogued import catalogue_warnings
+from .case.section import floating_lines, floating_types, known_lengths
 from .outcome import CaseError, DataError, FieldError
+from .vessel.balance import balance_warnings, constant_pull, current_warnings
 from .vessel.data import DataSource, HydrodynamicData, open_for
 from .vessel.fit import fit, lowest_wave
 from .vessel.rigid import buoyancy_minus_weight, hydrostatic_stiffness, mass_matrix, water_warnings
@@ -29,7 +32,10 @@ def check(case: Case, data: DataSource | None) -> list[str]:
         hydrostatic_stiffness(case.vessel, hydro)
         if case.vessel.trim == "as_given":
             buoyancy_minus_weight(case.vessel, hydro, case.environment)
-    return warnings + _bands(case)
+        warnings += balance_warnings(case.vessel, hydro, case.environment, constant_pull(case))
+        warnings += current_warnings(case)
+    lines = [*floating_types(case), *floating_lines(case, known_lengths(case)), *catalogue_warnings(case)]
+    return warnings + lines + _bands(case)
 
 
 def _opened(case: Case, data: DataSource | None) -> HydrodynamicData:

@@ -16,6 +16,7 @@ from .environment import Environment, RegularWave
 from .lines import Attachment as _Attachment
 from .lines import End, Line, LineType, Name
 from .quantities import Part
+from .section import section_faults
 from .vessel import Vessel
 
 MAX_ELEMENTS = 200_000
@@ -108,6 +109,7 @@ def _field_error(item: Any) -> FieldError:
 
 def _cross_checks(case: Case) -> Iterator[FieldError]:
     yield from _whole(case)
+    yield from section_faults(case)
     for name, line in case.lines.items():
         yield from _line(case, name, line)
     yield from _attachments(case)

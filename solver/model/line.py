@@ -9,6 +9,7 @@ import numpy as np
 
 from ..case import Case, harmonic_frequencies
 from ..case.lines import End, Line
+from ..case.section import section
 from ..kernels.line import LineArrays
 from ..outcome import CaseError, FieldError
 
@@ -144,18 +145,20 @@ def discretise(case: Case, name: str, frame: float, found_length: float) -> Line
     found_length : length of the segment marked `find` [m].
     """
     water, spec = case.environment.water, case.lines[name]
-    columns: dict[str, list[float]] = {key: [] for key in ("L", "EA", "EI", "D", "m", "cn", "ct", "can", "cat")}
+    keys = ("L", "EA", "EI", "D", "D_drag", "D_wet", "volume", "m", "cn", "ct", "can", "cat")
+    columns: dict[str, list[float]] = {key: [] for key in keys}
     for segment in spec.segments:
         kind = case.line_types[segment.type]
+        shape = section(kind, water)
         length = found_length if segment.length == "find" else float(segment.length)
         count = segment.elements or math.ceil(length / float(segment.element_length or length) - 1e-9)
-        values = (length / count, kind.EA, kind.EI, kind.diameter, kind.mass, kind.drag.normal, kind.drag.tangential,
-                  kind.added_mass.normal, kind.added_mass.tangential)  # fmt: skip
+        values = (length / count, kind.EA, kind.EI, kind.diameter, shape.drag_diameter, shape.wet_diameter, shape.volume,
+                  kind.mass, kind.drag.normal, kind.drag.tangential, kind.added_mass.normal,
+                  kind.added_mass.tangential)  # fmt: skip
         for key, value in zip(columns, values, strict=True):
             columns[key].extend([value] * count)
     c = {key: np.array(values, dtype=float) for key, values in columns.items()}
-    L, D = c["L"], c["D"]
-    area = 0.25 * math.pi * D**2
+    L, D, volume = c["L"], c["D_drag"], c["volume"]
     node = _nodes(case, name, L, c["m"], frame)
     kb = np.zeros(L.size + 1)
     flexible = (c["EI"][:-1] > 0) & (c["EI"][1:] > 0)
@@ -165,12 +168,12 @@ def discretise(case: Case, name: str, frame: float, found_length: float) -> Line
     if seabed.node_stiffness is not None:
         a1 = np.full(L.size + 1, seabed.node_stiffness)
     else:
-        a1 = (DEFAULT_SOIL if seabed.soil is None else seabed.soil) * _halves(L * D)
+        a1 = (DEFAULT_SOIL if seabed.soil is None else seabed.soil) * _halves(L * c["D"])
     z, current = current_profile(case, frame)
     rho, g = water.density, water.gravity
     return LineArrays(
-        L=L, EA=c["EA"], kb=kb, EI=c["EI"], D=D, w_dry=c["m"] * g * L, b_wet=rho * g * area * L,
-        cdn=0.25 * rho * L * D * c["cn"], cdt=0.25 * rho * L * D * c["ct"], mw=0.5 * rho * area * L,
+        L=L, EA=c["EA"], kb=kb, EI=c["EI"], D=c["D_wet"], w_dry=c["m"] * g * L, b_wet=rho * g * volume * L,
+        cdn=0.25 * rho * L * D * c["cn"], cdt=0.25 * rho * L * D * c["ct"], mw=0.5 * rho * volume * L,
         can=c["can"], cat=c["cat"], **node, a1=a1,
         seabed=np.array([1.0 / seabed.transition, -case.environment.depth, seabed.damping, seabed.friction,
                          seabed.friction_speed]), current_z=z, current_v=current,

@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 
 from ..case.quantities import DOF
+from ..case.section import line_weight_in_water
 from ..forces import axial
 from ..model.build import Model
 from ..model.line import LineModel
 from ..waves.spectra import hs_in_band, significant_height
+from .line_types import line_types_summary
 from .solved import Solved
 from .statistics import combined_maximum, most_probable_maximum, significant
 
@@ -30,6 +32,7 @@ def solver_version() -> str:
 def make_summary(solved: Solved, analyses: tuple[str, ...], compile_time: float) -> dict[str, Any]:
     """The summary of what was solved, for the analyses asked for."""
     out: dict[str, Any] = {"case": solved.model.case.name, "analyses": list(analyses)}
+    out["line_types"] = line_types_summary(solved.model.case)
     if "statics" in analyses:
         out["statics"] = _statics(solved)
     if solved.frequency is not None and "frequency_domain" in analyses:
@@ -76,6 +79,7 @@ def _statics(solved: Solved) -> dict[str, Any]:
             "arc_length": _list(line.element_arc),
             "tension": _list(tension),
             "length": line.length,
+            "weight_in_water": line_weight_in_water(solved.model.case, line.name, line.length),
             "grounded_length": _grounded(line, shape),
             "multiplicity": line.multiplicity,
         }

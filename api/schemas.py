@@ -272,3 +272,31 @@ class ProblemInfo(BaseModel):
     status: int
     detail: str | None = None
     errors: list[FieldFault] | None = None
+
+
+class CatalogueEntry(BaseModel):
+    """A kind of chain or rope; `unverified` names the values that were not read at their source."""
+
+    name: str = Field(examples=["chain-R4-studless"])
+    title: str = Field(examples=["Studless chain, grade R4"])
+    diameter_range: tuple[float, float] = Field(examples=[(0.02, 0.22)], description="m")
+    stiffnesses: list[str] = Field(examples=[["e301", "orcaflex"]], description="choices of EA, the default first")
+    unverified: list[str] = Field(examples=[[]])
+
+
+class CatalogueValue(BaseModel):
+    value: float = Field(examples=[286.56])
+    unit: str = Field(examples=["kg/m"])
+    formula: str = Field(examples=["19900 d² kg/m, d in m"])
+    source: str
+    status: Literal["verified", "unverified"]
+
+
+class CatalogueType(CatalogueEntry):
+    """The values are there when a diameter was given."""
+
+    diameter: float | None = Field(default=None, examples=[0.12], description="m")
+    stiffness: str | None = Field(default=None, examples=["e301"])
+    water_density: float | None = Field(default=None, examples=[1025.0], description="kg/m3")
+    weight_in_water: float | None = Field(default=None, examples=[2443.26], description="N/m")
+    values: dict[str, CatalogueValue] = {}

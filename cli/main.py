@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 COMMANDS = {
     "run": ("cli.run", "run a case here, without a server"),
+    "catalogue": ("cli.catalogue", "chain, wire and fibre ropes for line types, with the source of every number"),
     "moordyn": ("cli.moordyn", "read a MoorDyn deck into a case, or write one from a case"),
     "data": ("cli.data", "check hydrodynamic data, or convert between WAMIT's files and NetCDF"),
     "bem": ("cli.bem", "compute hydrodynamic data of a hull, without a server"),

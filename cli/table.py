@@ -8,6 +8,8 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from cli.catalogue import value_lines
+
 DOF = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 
 
@@ -16,6 +18,7 @@ def show(summary: dict[str, Any], console: Console | None = None) -> None:
     console = console or Console()
     console.print(f"[bold]{summary['case']}[/bold]")
     for name, make in (
+        ("line_types", _line_types),
         ("statics", _statics),
         ("modes", _modes),
         ("frequency_domain", _frequency),
@@ -23,7 +26,7 @@ def show(summary: dict[str, Any], console: Console | None = None) -> None:
     ):
         if name in summary:
             for table in make(summary[name]):
-                console.print(table)
+                console.print(table, highlight=False, markup=False, soft_wrap=isinstance(table, str))
     for warning in summary.get("warnings", []):
         console.print(f"[yellow]warning:[/yellow] {warning}", highlight=False)
 
@@ -35,9 +38,34 @@ def _table(title: str, *columns: str) -> Table:
     return table
 
 
+def _line_types(types: dict[str, Any]) -> list[Table | str]:
+    if not types:
+        return []
+    table = _table("Line types", "type", "diameter mm", "mass kg/m", "in water N/m", "EA MN", "breaking load kN")
+    told: list[Table | str] = [table]
+    for name, kind in types.items():
+        load = kind.get("breaking_load")
+        table.add_row(
+            name, f"{1e3 * kind['diameter']:g}", f"{kind['mass']:.2f}", f"{kind['weight_in_water']:.2f}",
+            f"{kind['EA'] / 1e6:.2f}", "" if load is None else f"{load / 1e3:.1f}",
+        )  # fmt: skip
+        if "catalogue" in kind:
+            lines = value_lines(kind["catalogue"]["values"])
+            told.append("\n  ".join([f"{name}, from the catalogue, {kind['catalogue']['name']}:", *lines]))
+    return told
+
+
 def _statics(statics: dict[str, Any]) -> list[Table]:
     table = _table(
-        "Statics", "line, end", "tension kN", "force x kN", "force y kN", "force z kN", "length m", "on the bed m"
+        "Statics",
+        "line, end",
+        "tension kN",
+        "force x kN",
+        "force y kN",
+        "force z kN",
+        "length m",
+        "on the bed m",
+        "in water kN",
     )
     for name, line in statics["lines"].items():
         for end in ("end_a", "end_b"):
@@ -46,6 +74,7 @@ def _statics(statics: dict[str, Any]) -> list[Table]:
             table.add_row(
                 f"{name}, {end[-1]}", f"{line[end]['tension'] / 1e3:.2f}", *forces,
                 f"{line['length']:.2f}" if first else "", f"{line['grounded_length']:.1f}" if first else "",
+                f"{line['weight_in_water'] / 1e3:.1f}" if first else "",
             )  # fmt: skip
     tables = [table]
     if "vessel" in statics:

@@ -71,6 +71,8 @@ def _section(name: str, place: str, part: Schema) -> str:
 def _default(field: Schema) -> str:
     if "patternProperties" in field:
         return "empty"
+    if "x-required-unless" in field:
+        return f"required without `{field['x-required-unless']}`"
     value = field.get("default", {})
     if value is None:
         return "none"

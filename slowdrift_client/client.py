@@ -174,6 +174,13 @@ class Client:
         files, data = {"file": (path.name, path.read_bytes())}, _given(name=name)
         return DataSetInfo.model_validate(self._send("POST", "data-sets", files=files, data=data).json())
 
+    def catalogue(
+        self, name: str | None = None, diameter: float | str | None = None, stiffness: str | None = None
+    ) -> Any:
+        """Chain, wire and fibre ropes for line types: all entries, or one with its values at a diameter ("120 mm")."""
+        path = "catalogue" if name is None else f"catalogue/{quote(name, safe='')}"
+        return self._send("GET", path, params=_given(diameter=diameter, stiffness=stiffness)).json()
+
     def study(
         self,
         case: str | Path | Mapping[str, Any],

@@ -6,9 +6,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from .case import Case
+from .case.catalogued import catalogue_warnings
 from .case.partial import noted
+from .case.section import floating_lines, floating_types, known_lengths
 from .case.vessel import Hydrodynamics, WamitFiles
 from .outcome import CaseError, DataError, FieldError, Unread
+from .vessel.balance import balance_warnings, constant_pull, current_warnings
 from .vessel.data import DataSource, HydrodynamicData, open_for
 from .vessel.fit import fit, lowest_wave
 from .vessel.rigid import buoyancy_minus_weight, hydrostatic_stiffness, mass_matrix, water_warnings
@@ -35,7 +38,7 @@ def examine(case: Case, data: DataSource | None) -> tuple[list[FieldError], list
     """As `check`, for a case that may be read in part (case/partial.py): all faults, and the warnings."""
     errors: list[FieldError] = []
     warnings: list[str] = []
-    for look in (_vessel, _steepness, _bands):
+    for look in (_vessel, _line_types, _steepness, _bands):
         try:
             warnings += look(case, data, errors)
         except Unread:
@@ -63,7 +66,14 @@ def _vessel(case: Case, data: DataSource | None, errors: list[FieldError]) -> li
     with _noted(errors):
         if vessel.trim == "as_given":
             buoyancy_minus_weight(vessel, hydro, case.environment)
+    warnings += balance_warnings(vessel, hydro, case.environment, constant_pull(case))
+    warnings += current_warnings(case)
     return warnings
+
+
+def _line_types(case: Case, _: DataSource | None, __: list[FieldError]) -> list[str]:
+    """Warnings about line types that float, and about what the catalogue gave."""
+    return [*floating_types(case), *floating_lines(case, known_lengths(case)), *catalogue_warnings(case)]
 
 
 def _steepness(case: Case, _: DataSource | None, __: list[FieldError]) -> list[str]:

@@ -20,6 +20,7 @@ from .outcome import CaseError, FieldError, Interrupted, NotConverged
 from .plan import plan
 from .results.channels import make_channels, make_time_channels
 from .results.doubt import add_doubtful
+from .results.line_types import line_types_summary
 from .results.part import Chunk, OnProgress, Part, Progress, Result
 from .results.solved import Solved
 from .results.strain import allowed_tension
@@ -204,6 +205,7 @@ def _time_chunk(
     seeds = list(range(*chunk.seeds))
     turned = model.vessel.damping_warnings(float(static.position[5])) if model.vessel is not None else ()
     about: dict[str, Any] = {
+        "line_types": line_types_summary(model.case),
         "warnings": [*model.warnings, *static.warnings, *turned],
         "compile_time": compile_time,
         "provenance": provenance(model),

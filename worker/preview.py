@@ -62,7 +62,7 @@ def _statics(solver: PreviewSolver, canonical: str, data: PinnedSource, check: O
 
 
 def shapes(result: Result) -> dict[str, Any]:
-    """The statics summary, and where each line lies: arc length and [x, y, z] per node."""
+    """The statics summary, the line types, and where each line lies: arc length and [x, y, z] per node."""
     lines = {}
     for channel in result.channels:
         if channel.name.startswith("static/line/") and channel.name.endswith(POSITION):
@@ -70,6 +70,7 @@ def shapes(result: Result) -> dict[str, Any]:
             lines[name] = {"arc_length": channel.axes[0].values, "position": channel.values}
     return {
         "statics": result.summary.get("statics"),
+        "line_types": result.summary.get("line_types"),
         "lines": lines,
         "warnings": list(result.summary.get("warnings", ())),
     }

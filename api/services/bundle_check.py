@@ -15,7 +15,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from solver.case import Case, load_case, parse_case
-from solver.case.text import MAX_BYTES
+from solver.case.text import MAX_BYTES, read_text
 from solver.outcome import CaseError, DataError, FieldError
 from solver.vessel import data as hydrodynamics
 from store.arrays import Encoded, decode
@@ -115,6 +115,8 @@ def _case(archive: Archive) -> Case:
     canonical, yaml = _json(archive.read(CASE, 4 * MAX_BYTES), CASE), archive.read(CASE_TEXT, MAX_BYTES)
     try:
         case, text = parse_case(canonical), load_case(yaml)
+        if text.content_hash() != case.content_hash():
+            text = parse_case(_with_catalogue_values(read_text(yaml)[0], canonical))
     except CaseError as error:
         raise CaseError([FieldError(("case", *each.loc), each.message, each.value) for each in error.errors]) from None
     if not case.content_hash() == text.content_hash() == part.content_hash:
@@ -123,6 +125,14 @@ def _case(archive: Archive) -> Case:
     if unknown or case.name != part.case_name or not case.name.isprintable() or not part.name.isprintable():
         raise _fault(MANIFEST, "its names or analyses are not those of the case, or cannot be shown")
     return case
+
+
+def _with_catalogue_values(data: Any, canonical: Any) -> Any:
+    """The text's case with the values that the catalogue gave its line types when it was saved."""
+    for name, kind in (canonical.get("line_types") or {}).items():
+        if kind.get("catalogue_values") is not None and isinstance((data.get("line_types") or {}).get(name), dict):
+            data["line_types"][name].setdefault("catalogue_values", kind["catalogue_values"])
+    return data
 
 
 def _summary(archive: Archive) -> str:

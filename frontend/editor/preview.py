@@ -17,7 +17,8 @@ from frontend.figures.sea import sea_figure
 from frontend.format import MISSING, number
 
 VIEWS = (("space", "3D"), ("plan", "Plan"), ("profile", "Profile"), ("sea", "Sea"))
-HEAD = ("Line", "end a [kN]", "end b [kN]", "grounded [m]")
+HEAD = ("Line", "end a [kN]", "end b [kN]", "grounded [m]", "in water [kN]")
+TYPES = ("Line type", "mass [kg/m]", "in water [N/m]", "EA [MN]", "breaking load [kN]")
 
 
 def layout() -> Any:
@@ -109,10 +110,21 @@ def _sea(seas: list[dict[str, Any]]) -> tuple[Any, str]:
 
 
 def facts(shape: dict[str, Any]) -> Any:
-    """Tensions at both ends and what lies on the seabed."""
+    """Tensions at both ends, what lies on the seabed, and what lines and their types weigh in water."""
     rows = []
     for name, line in ((shape.get("statics") or {}).get("lines") or {}).items():
         ends = [(line.get(end) or {}).get("tension") for end in ("end_a", "end_b")]
-        told = [MISSING if value is None else number(value / 1e3, 4) for value in ends]
-        rows.append([name, *told, number(line.get("grounded_length"))])
-    return table("", HEAD, rows, min_width=320) if rows else None
+        told = [_scaled(value, 1e3) for value in ends]
+        rows.append([name, *told, number(line.get("grounded_length")), _scaled(line.get("weight_in_water"), 1e3)])
+    if not rows:
+        return None
+    kinds = [
+        [name, number(kind["mass"], 4), number(kind["weight_in_water"], 4), _scaled(kind["EA"], 1e6),
+         _scaled(kind.get("breaking_load"), 1e3)]
+        for name, kind in (shape.get("line_types") or {}).items()
+    ]  # fmt: skip
+    return [table("", HEAD, rows, min_width=320), *([table("", TYPES, kinds, min_width=320)] if kinds else [])]
+
+
+def _scaled(value: float | None, unit: float) -> str:
+    return MISSING if value is None else number(value / unit, 4)

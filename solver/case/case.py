@@ -17,6 +17,7 @@ from .lines import Attachment as _Attachment
 from .lines import End, Line, LineType, Name, Segment
 from .partial import known, read_part
 from .quantities import Part
+from .section import section_faults
 from .vessel import Vessel
 
 MAX_ELEMENTS = 200_000
@@ -125,7 +126,7 @@ def _field_error(item: Any) -> FieldError:
 
 def _cross_checks(case: Case) -> Iterator[FieldError]:
     """Faults between fields; a check that needs a field which could not be read is left out."""
-    for check in (_whole, _vessel, _elements, _lines, _attachments, _breaking, _sea, _time_domain):
+    for check in (_whole, _vessel, section_faults, _elements, _lines, _attachments, _breaking, _sea, _time_domain):
         yield from known(check, case)
 
 

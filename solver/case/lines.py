@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_serializer, model_validator
 
+from ..catalogue import entry
+from .catalogued import CatalogueName, CatalogueValues, fill_in, unless_catalogue, without
 from .quantities import (
     Angle,
     Area,
@@ -13,6 +15,8 @@ from .quantities import (
     Coefficient,
     Length,
     LineMass,
+    LineVolume,
+    LineWeight,
     Mass,
     NonNegativeLength,
     Part,
@@ -36,10 +40,22 @@ class NormalTangential(Part):
 
 
 class LineType(Part):
-    """A cross-section. Drag and added mass follow Morison's equation with the hydrodynamic diameter."""
+    """A cross-section: its mass, its displaced volume, and the diameter its drag acts on (docs/theory.md, Lines)."""
 
+    model_config = ConfigDict(json_schema_extra=unless_catalogue)
+
+    catalogue: CatalogueName | None = None
+    """An entry of the catalogue (`slowdrift catalogue`): it gives every field of this type that is left out."""
+    stiffness: Literal["e301", "orcaflex"] | None = None
+    """EA of a chain of the catalogue: by DNV-OS-E301 (default, depends on the grade) or by OrcaFlex's table."""
     diameter: PositiveLength
-    """Hydrodynamic (outer) diameter: buoyancy, drag and added mass."""
+    """Nominal diameter (bar of a chain, rope); of drag and displaced volume too, unless these are given."""
+    drag_diameter: PositiveLength | None = None
+    """Diameter of the drag coefficients; the nominal one when left out."""
+    volume: LineVolume | None = None
+    """Displaced volume per unit length: buoyancy and added mass; a solid cylinder of the nominal diameter when left out."""
+    submerged_weight: LineWeight | None = None
+    """Weight in water per unit length, in place of `volume`; negative for a line that floats."""
     mass: LineMass
     """Dry mass per unit length, contents included."""
     EA: PositiveForce
@@ -50,11 +66,45 @@ class LineType(Part):
     """What an element carries in compression: `none`, at most its Euler load π²EI/l², which is nothing without bending
     stiffness; `allowed`, any compression, as a spring that pushes."""
     drag: NormalTangential = NormalTangential()
-    """Drag coefficients on the diameter (chain: on its nominal diameter, about 2.4)."""
+    """Drag coefficients on the drag diameter (studless chain: 2.4 and 1.15 on its nominal diameter)."""
     added_mass: NormalTangential = NormalTangential()
-    """Added mass coefficients on the displaced mass."""
+    """Added mass coefficients on the displaced mass, water density × displaced volume."""
     breaking_load: PositiveForce | None = None
     """Minimum breaking load, for utilisation."""
+    catalogue_values: CatalogueValues | None = None
+    """What `catalogue` gave; the program writes it, so that a stored case stays as it is when the catalogue changes."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_catalogue(cls, data: Any) -> Any:
+        return fill_in(data)
+
+    @field_validator("stiffness")
+    @classmethod
+    def _known_stiffness(cls, value: str | None, info: ValidationInfo) -> str | None:
+        name = info.data.get("catalogue")
+        if value is not None and name is None and "catalogue" in info.data:
+            raise ValueError("stiffness chooses the EA of a catalogue entry; give `catalogue`, or EA alone")
+        if value is not None and name is not None:
+            entry(name).choice(value)
+        return value
+
+    @field_validator("diameter")
+    @classmethod
+    def _within_catalogue(cls, value: float, info: ValidationInfo) -> float:
+        if info.data.get("catalogue") is not None:
+            entry(info.data["catalogue"]).check(value)
+        return value
+
+    @model_validator(mode="after")
+    def _one_volume(self) -> LineType:
+        if self.volume is not None and self.submerged_weight is not None:
+            raise ValueError("give at most one of volume and submerged_weight")
+        return self
+
+    @model_serializer(mode="wrap")
+    def _without_catalogue_values(self, write: Any) -> dict[str, Any]:
+        return without(write(self), self.catalogue_values)
 
 
 class Segment(Part):

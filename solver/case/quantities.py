@@ -78,6 +78,8 @@ if TYPE_CHECKING:  # to a type checker every quantity is the float it becomes
     LineDamping = float
     Area = float
     Volume = float
+    LineVolume = float
+    LineWeight = float
     Spectral = float
 else:
     Length = _quantity("length")
@@ -103,6 +105,8 @@ else:
     LineDamping = _quantity("line_damping", ge=0)
     Area = _quantity("area", ge=0)
     Volume = _quantity("volume", ge=0)
+    LineVolume = _quantity("line_volume", ge=0)
+    LineWeight = _quantity("line_weight")
     Spectral = _quantity("spectral", ge=0)
 
 Coefficient = Annotated[float, Field(ge=0, le=100)]

@@ -44,6 +44,11 @@ UNITS: dict[str, tuple[str, dict[str, float]]] = {
     "line_damping": ("N s/m", {"N s/m": 1.0, "kN s/m": 1e3, "MN s/m": 1e6}),
     "area": ("m2", {"m2": 1.0, "ft2": FOOT**2}),
     "volume": ("m3", {"m3": 1.0, "L": 1e-3}),
+    "line_volume": ("m3/m", {"m3/m": 1.0, "L/m": 1e-3}),
+    "line_weight": (
+        "N/m",
+        {"N/m": 1.0, "kN/m": 1e3, "kgf/m": G_STANDARD, "lbf/ft": POUND * G_STANDARD / FOOT},
+    ),
     "area_moment": ("m4", {"m4": 1.0}),
     "spectral": ("m2 s/rad", {"m2 s/rad": 1.0}),
 }

@@ -26,12 +26,12 @@ class LineArrays(NamedTuple):
     knee: Array  # (N,) width ρ of the regularisation beyond it, as a strain
     kb: Array  # (N+1,) rotational stiffness at a node, zero at the ends
     EI: Array  # (N,)
-    D: Array  # (N,) diameter
+    D: Array  # (N,) of the solid cylinder of the displaced volume: the height over which a lying piece goes under
     w_dry: Array  # (N,) dry weight of an element
     b_wet: Array  # (N,) buoyancy of an element, fully wet
-    cdn: Array  # (N,) normal drag of half an element, ¼ρLDCn
+    cdn: Array  # (N,) normal drag of half an element, ¼ρLDCn with the drag diameter
     cdt: Array  # (N,) tangential drag of half an element, ¼ρLDCt
-    mw: Array  # (N,) displaced mass of half an element, ⅛ρπD²L
+    mw: Array  # (N,) displaced mass of half an element, ½ρvL with the displaced volume v per length
     can: Array  # (N,) normal added mass coefficient
     cat: Array  # (N,) tangential added mass coefficient
     node_mass: Array  # (N+1,) dry mass of a node: half elements and attachment

@@ -12,8 +12,11 @@ import numpy as np
 
 from ..case import Case
 from ..case.analysis import Statics
+from ..case.catalogued import catalogue_warnings
 from ..case.environment import RegularWave
+from ..case.section import floating_types
 from ..outcome import DataError
+from ..vessel.balance import current_warnings
 from ..vessel.data import DataSource, HydrodynamicData, open_for
 from .line import LineModel, build_line
 from .vessel import VesselModel, build_vessel
@@ -61,6 +64,7 @@ def build(case: Case, data: DataSource | None) -> Model:
             raise DataError("the case refers to hydrodynamic data, but no source of data was given")
         hydro = open_for(data, case.vessel.hydrodynamics, case.environment)
     vessel, warnings = build_vessel(case, hydro) if case.vessel is not None else (None, ())
+    warnings = (*warnings, *current_warnings(case), *floating_types(case), *catalogue_warnings(case))
     return Model(case, frame, lines, vessel, hydro, (*warnings, *_left_out(case)))
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..case import Case, harmonic_frequencies
 from ..case.lines import End, Line, Segment
+from ..case.section import section
 from ..kernels.compression import SHARE
 from ..kernels.line import LineArrays
 from ..outcome import CaseError, FieldError
@@ -158,33 +159,34 @@ def discretise(case: Case, name: str, frame: float, found_length: float) -> Line
     found_length : length of the segment marked `find` [m].
     """
     water, spec = case.environment.water, case.lines[name]
-    keys = ("L", "EA", "EI", "D", "m", "cn", "ct", "can", "cat", "pushes")
+    keys = ("L", "EA", "EI", "D", "D_drag", "D_wet", "volume", "m", "cn", "ct", "can", "cat", "pushes")
     columns: dict[str, list[float]] = {key: [] for key in keys}
     for segment in spec.segments:
         kind = case.line_types[segment.type]
+        shape = section(kind, water)
         length = found_length if segment.length == "find" else float(segment.length)
         count = element_count(segment, length)
-        values = (length / count, kind.EA, kind.EI, kind.diameter, kind.mass, kind.drag.normal, kind.drag.tangential,
-                  kind.added_mass.normal, kind.added_mass.tangential, kind.compression == "allowed")  # fmt: skip
+        values = (length / count, kind.EA, kind.EI, kind.diameter, shape.drag_diameter, shape.wet_diameter, shape.volume,
+                  kind.mass, kind.drag.normal, kind.drag.tangential, kind.added_mass.normal,
+                  kind.added_mass.tangential, kind.compression == "allowed")  # fmt: skip
         for key, value in zip(columns, values, strict=True):
             columns[key].extend([value] * count)
     c = {key: np.array(values, dtype=float) for key, values in columns.items()}
-    L, D = c["L"], c["D"]
-    area = 0.25 * math.pi * D**2
+    L, D, volume = c["L"], c["D_drag"], c["volume"]
     rho, g = water.density, water.gravity
     node = _nodes(case, name, L, c["m"], frame)
     kb = np.zeros(L.size + 1)
     flexible = (c["EI"][:-1] > 0) & (c["EI"][1:] > 0)
     with np.errstate(divide="ignore"):
         kb[1:-1] = np.where(flexible, 2.0 / (L[:-1] / c["EI"][:-1] + L[1:] / c["EI"][1:]), 0.0)
-    w_dry, b_wet = c["m"] * g * L, rho * g * area * L
-    bed = _bed_springs(case, _halves(L), _halves(w_dry - b_wet), _halves(L * D))
+    w_dry, b_wet = c["m"] * g * L, rho * g * volume * L
+    bed = _bed_springs(case, _halves(L), _halves(w_dry - b_wet), _halves(L * c["D"]))
     z, current = current_profile(case, frame)
     return LineArrays(
         L=L, EA=c["EA"], limit=np.where(c["pushes"] > 0, np.inf, euler_load(c["EI"], L) / c["EA"]),
         knee=_knee(w_dry / L, b_wet / L, min(case.environment.depth, float(L.sum())), c["EA"]),
-        kb=kb, EI=c["EI"], D=D, w_dry=w_dry, b_wet=b_wet,
-        cdn=0.25 * rho * L * D * c["cn"], cdt=0.25 * rho * L * D * c["ct"], mw=0.5 * rho * area * L,
+        kb=kb, EI=c["EI"], D=c["D_wet"], w_dry=w_dry, b_wet=b_wet,
+        cdn=0.25 * rho * L * D * c["cn"], cdt=0.25 * rho * L * D * c["ct"], mw=0.5 * rho * volume * L,
         can=c["can"], cat=c["cat"], **node, **bed,
         current_z=z, current_v=current,
     )  # fmt: skip

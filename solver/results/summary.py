@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 
 from ..case.quantities import DOF
+from ..case.section import line_weight_in_water
 from ..forces import axial
 from ..model.build import Model
 from ..waves.spectra import hs_in_band, significant_height
+from .line_types import line_types_summary
 from .line_values import grounded_length, largest, utilisation
 from .solved import END_FORCES, ORIGINS, Solved, Spectra
 from .statistics import combined_maximum, most_probable_maximum, significant
@@ -31,6 +33,7 @@ def solver_version() -> str:
 def make_summary(solved: Solved, analyses: tuple[str, ...], compile_time: float) -> dict[str, Any]:
     """The summary of what was solved, for the analyses asked for."""
     out: dict[str, Any] = {"case": solved.model.case.name, "analyses": list(analyses)}
+    out["line_types"] = line_types_summary(solved.model.case)
     if "statics" in analyses:
         out["statics"] = _statics(solved)
     if solved.frequency is not None and "frequency_domain" in analyses:
@@ -92,6 +95,7 @@ def _statics(solved: Solved) -> dict[str, Any]:
             "arc_length": _list(line.element_arc),
             "tension": _list(tension),
             "length": line.length,
+            "weight_in_water": line_weight_in_water(solved.model.case, line.name, line.length),
             "grounded_length": grounded_length(line, shape),
             "multiplicity": line.multiplicity,
         }

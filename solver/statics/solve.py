@@ -7,10 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..case.section import floating_lines
 from ..forces import axial
 from ..model.body import VesselBody
 from ..model.build import Model
 from ..model.line import LineModel, has_current
+from ..vessel.balance import balance_warnings
+from ..vessel.rigid import turned_force
 from .newton import State, equilibrium
 from .pretension import place, still_water
 from .start import first_shape
@@ -77,13 +80,28 @@ def _trim(model: Model, lines: Sequence[LineModel], forces: Sequence[Array], bod
     assert model.vessel is not None
     if not model.vessel.balanced:
         return model.vessel.buoyancy_minus_weight
-    load = np.zeros(6)
+    load = -_pull(lines, forces, body, np.zeros(6))
+    return np.array([0.0, 0.0, load[2], load[3], load[4], 0.0])
+
+
+def _pull(lines: Sequence[LineModel], forces: Sequence[Array], body: VesselBody, position: Array) -> Array:
+    """Force and moment of all lines on the vessel about its CG, frame axes (6,) [N, N m]."""
+    pull = np.zeros(6)
     for line, force in zip(lines, forces, strict=True):
         for row, end in enumerate(line.ends):
             if end.kind == "fairlead" and end.arm is not None:
                 at_end = force[3 * row : 3 * row + 3]
-                load -= line.multiplicity * body.arm_matrix(np.zeros(6), end.arm).T @ at_end
-    return np.array([0.0, 0.0, load[2], load[3], load[4], 0.0])
+                pull += line.multiplicity * body.arm_matrix(position, end.arm).T @ at_end
+    return pull
+
+
+def _balance(model: Model, lines: Sequence[LineModel], state: State) -> list[str]:
+    """What weight, buoyancy and the lines of an equilibrium say of the vessel's mass and centre."""
+    if model.vessel is None or model.case.vessel is None:
+        return []
+    pull = _pull(lines, state.end_forces, model.vessel.body, state.position) + model.vessel.steady_load
+    own = turned_force(pull, -float(state.position[5]))
+    return balance_warnings(model.case.vessel, model.data, model.case.environment, own)
 
 
 def settle(model: Model, start: StaticState, extra: Sequence[Array] | None = None) -> StaticState:
@@ -135,6 +153,8 @@ def _warnings(model: Model, lines: Sequence[LineModel], state: State) -> tuple[s
     found: list[str] = []
     if model.vessel is not None:
         found += model.vessel.drift_warnings(model.wave_systems, float(state.position[5]))
+    found += _balance(model, lines, state)
+    found += floating_lines(model.case, {line.name: line.length for line in lines})
     for line, shape in zip(lines, state.shapes, strict=True):
         tension = axial.tension(line.arrays, shape)
         slack = int(np.sum(tension < 0))

@@ -116,6 +116,8 @@ MATRIX: dict[str, Line] = {
     # cases
     "GET /api/v1/schema": Line("account", 200),
     "GET /api/v1/examples": Line("account", 200),
+    "GET /api/v1/catalogue": Line("account", 200),
+    "GET /api/v1/catalogue/{name}": Line("account", 200, "/api/v1/catalogue/polyester?diameter=0.2"),
     "POST /api/v1/preview": Line("read", 504, body=a_case("nobody answers")),
     "POST /api/v1/cases": Line("edit", 201, sent=lambda r: {"json": a_case(r.name)}),
     "POST /api/v1/cases/check": Line("read", 200, body=a_case("checked")),

@@ -124,3 +124,11 @@ def test_the_models_are_those_of_the_service() -> None:
     from docs import make_client
 
     assert make_client.generate() == Path(make_client.TARGET).read_text(), "run python docs/make_client.py"
+
+
+def test_catalogue(slowdrift: Client) -> None:
+    assert "chain-R4-studless" in {item["name"] for item in slowdrift.catalogue()}
+    found = slowdrift.catalogue("chain-R4-studless", "120 mm", "orcaflex")
+    assert found["values"]["EA"]["value"] == pytest.approx(1229.76e6)
+    with pytest.raises(ApiError, match="outside the range"):
+        slowdrift.catalogue("wire", 2.0)

@@ -52,7 +52,9 @@ def test_every_key_is_documented(name: str) -> None:
     case = load_case(text)
     summary = run(case, FileSource(path.parent)).summary
     assert summary["failures"] == {}
+    types = summary.pop("line_types")
     found = {general(key, tuple(case.lines)) for key in leaves(summary)}
+    found |= {f"line_types.TYPE.{key}" for kind in types.values() for key in leaves(kind)}
     assert found <= DOCUMENTED
 
 

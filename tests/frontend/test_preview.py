@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import math
 from typing import Any
 
 import numpy as np
 import pytest
+from plotly.utils import PlotlyJSONEncoder
 
+from frontend.editor.preview import facts
 from frontend.editor.text import EditError
 from frontend.figures import preview
 from frontend.figures.sea import described, jonswap, sea_figure
@@ -100,3 +103,14 @@ def test_the_plan_says_azimuths_and_directions() -> None:
     waves = notes[2]
     assert waves["x"] == pytest.approx(waves["ax"])  # to +y: the arrow points up
     assert waves["y"] > waves["ay"]
+
+
+def test_facts_say_what_lines_and_types_weigh_in_water() -> None:
+    line = {"end_a": {"tension": 1e5}, "end_b": {"tension": 2e5}, "grounded_length": 10.0, "weight_in_water": 345600.0}
+    kind = {"mass": 286.56, "weight_in_water": 2443.26, "EA": 1.1649e9}
+    found = facts({"statics": {"lines": {"leg": line}}, "line_types": {"chain": kind}})
+    text = json.dumps(found, cls=PlotlyJSONEncoder, ensure_ascii=False)
+    for words in ("in water [kN]", "345.6", "in water [N/m]", "2\u2009443", "1\u2009165"):
+        assert words in text, words
+    assert facts({"statics": {"lines": {}}}) is None
+    assert facts({"statics": {"lines": {"leg": {}}}}) is not None  # an answer of an earlier version

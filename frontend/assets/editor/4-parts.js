@@ -11,7 +11,7 @@
     Hydrodynamics: ["reference_point"], Statics: ["tolerance", "max_iterations"],
     FrequencyDomain: ["linearisation", "include_low_velocities", "tolerance", "max_iterations"],
     TimeDomain: ["scheme", "wave_kinematics", "amplitudes", "wave_step", "tolerance", "max_iterations", "first_seed"],
-    Line: ["allow_stretch"], Segment: [], Damping: ["linear_matrix"], RegularWave: ["phase"],
+    LineType: ["stiffness", "drag_diameter", "volume", "submerged_weight"], Line: ["allow_stretch"], Segment: [], Damping: ["linear_matrix"], RegularWave: ["phase"],
   };
   const SEAS = {
     jonswap: { model: "Jonswap", words: "JONSWAP", made: { spectrum: "jonswap", hs: "3 m", tp: "10 s", gamma: "3.3", direction: "180 deg" } },

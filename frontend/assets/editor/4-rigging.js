@@ -30,12 +30,12 @@
 
   function LineTypes({ tree }) {
     const types = tree.line_types || {};
-    const add = () => F.set(["line_types", free(types, "chain")], { diameter: "0.1 m", mass: "200 kg/m", EA: "800 MN", drag: { normal: "2.4", tangential: "1.15" }, breaking_load: "9 MN" });
+    const add = () => F.set(["line_types", free(types, "chain")], { catalogue: "chain-R4-studless", diameter: "100 mm" });
     return h("div", null,
       Object.entries(types).map(([name, value], index) => {
         const copy = () => F.set(["line_types", free(types, `${name} copy`)], value);
         return h(Card, { key: index, open: true, group: "line_types", name, actions: h("button", { type: "button", className: "sd-small", onClick: copy }, "Copy") },
-          h(P.Part, { path: ["line_types", name], schema: model("LineType"), value }));
+          h(P.Part, { path: ["line_types", name], schema: model("LineType"), value, skip: ["catalogue_values"] }));
       }),
       h("button", { type: "button", className: "sd-small", onClick: add }, "Add a line type"));
   }

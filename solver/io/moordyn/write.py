@@ -9,6 +9,7 @@ from typing import Any
 
 from ...case import Case, end_point
 from ...case.lines import End, Line, LineType
+from ...case.section import section
 from ...outcome import CaseError, FieldError
 from .report import Report, printable
 
@@ -90,8 +91,15 @@ def _text(case: Case, tables: _Tables, options: list[tuple[float, str, str]], re
     ]
     words = _words(case)
     for name, kind in case.line_types.items():
-        values = (kind.diameter, kind.mass, kind.EA, -1.0, kind.EI, kind.drag.normal, kind.added_mass.normal,
-                  kind.drag.tangential / math.pi, kind.added_mass.tangential)  # fmt: skip
+        diameter = _diameter(case, name)
+        wide = section(kind, case.environment.water).drag_diameter / diameter
+        values = (diameter, kind.mass, kind.EA, -1.0, kind.EI, wide * kind.drag.normal, kind.added_mass.normal,
+                  wide * kind.drag.tangential / math.pi, kind.added_mass.tangential)  # fmt: skip
+        if diameter != kind.diameter or wide != 1.0:
+            report.assumed.append(
+                f"line_types.{name}: Diam {diameter:.6g} m is that of its displaced volume (diameter {kind.diameter:g} m); "
+                f"Cd and CdAx times {wide:.6g}, so that its drag is the same"
+            )
         out.append(" ".join([words[name], *map(_number, values)]))
     out += [_heading("POINTS"), "ID Attachment X Y Z Mass Volume CdA Ca", "(#) (-) (m) (m) (m) (kg) (m^3) (m^2) (-)"]
     for index, (attachment, xyz, load) in enumerate(tables.points, 1):
@@ -103,6 +111,15 @@ def _text(case: Case, tables: _Tables, options: list[tuple[float, str, str]], re
     out += [f"{_number(value)} {word} - {text}" for value, word, text in options]
     out += [_heading("OUTPUTS"), *(f"FairTen{index}" for index in range(1, len(tables.lines) + 1))]
     return "\n".join([*out, "--------------------- need this line ---------------------", ""])
+
+
+def _diameter(case: Case, name: str) -> float:
+    """MoorDyn's one diameter of a line type: that of the solid cylinder of its displaced volume [m]."""
+    found = section(case.line_types[name], case.environment.water).wet_diameter
+    if found <= 0:
+        message = "MoorDyn knows no line type without displaced volume; give a volume above 0"
+        raise CaseError([FieldError(("line_types", name, "volume"), message)])
+    return found
 
 
 def _heading(words: str) -> str:
@@ -228,17 +245,19 @@ def _loads(
     return found
 
 
-def _areas(case: Case) -> list[float]:
-    """Diameter × element length next to end a of every line [m2]."""
+def _areas(case: Case, nominal: bool = False) -> list[float]:
+    """Diameter, as written or `nominal`, × element length next to end a of every line [m2]."""
     found = []
+    names = [line.segments[0].type for line in case.lines.values()]
+    wide = {name: case.line_types[name].diameter if nominal else _diameter(case, name) for name in names}
     for line in case.lines.values():
         segment = line.segments[0]
         if segment.length == "find":
             continue
         length = float(segment.length)
         count = segment.elements or math.ceil(length / float(segment.element_length or length) - 1e-9)
-        found.append(case.line_types[segment.type].diameter * length / count)
-    return found or [case.line_types[line.segments[0].type].diameter for line in case.lines.values()]
+        found.append(wide[segment.type] * length / count)
+    return found or [wide[name] for name in names]
 
 
 def _bed(case: Case, report: Report) -> tuple[float, float]:
@@ -251,12 +270,25 @@ def _bed(case: Case, report: Report) -> tuple[float, float]:
             f"seabed per area from that of a node, over diameter × element length: mean {mean:.4g} of {min(areas):.4g} to "
             f"{max(areas):.4g} m2"
         )
-    soil = seabed.node_stiffness / mean if seabed.node_stiffness is not None else seabed.soil or DEFAULT_SOIL
+    soil = seabed.node_stiffness / mean if seabed.node_stiffness is not None else _soil(case, areas, report)
     over = "its default" if seabed.transition is None else f"{seabed.transition:g} m"
     report.dropped.append(f"seabed.transition {over}: MoorDyn's bed begins at once")
     if seabed.friction:
         report.dropped.append(f"seabed.friction_speed {seabed.friction_speed:g} m/s: MoorDyn has FricDamp in its place")
     return soil, seabed.damping / mean
+
+
+def _soil(case: Case, areas: list[float], report: Report) -> float:
+    """kBot that gives the soil's stiffness on the nominal diameter, where MoorDyn takes its own."""
+    soil, nominal = case.environment.seabed.soil or DEFAULT_SOIL, _areas(case, nominal=True)
+    ratios = [own / written for own, written in zip(nominal, areas, strict=True)]
+    mean = sum(ratios) / len(ratios)
+    if mean != 1.0:
+        spread = "" if max(ratios) - min(ratios) < 1e-9 else f", the mean of {min(ratios):.4g} to {max(ratios):.4g}"
+        report.assumed.append(
+            f"kBot is seabed.soil times {mean:.6g}{spread}: the soil acts on the nominal diameter, MoorDyn's on Diam"
+        )
+    return soil * mean
 
 
 def _step(case: Case, soil: float, damping: float) -> float:
@@ -267,12 +299,12 @@ def _step(case: Case, soil: float, damping: float) -> float:
             kind = case.line_types[segment.type]
             length = float(segment.length) if segment.length != "find" else 100.0
             count = segment.elements or math.ceil(length / float(segment.element_length or length) - 1e-9)
-            steps.append(_longest(kind, length / count, soil, damping))
+            steps.append(_longest(kind, _diameter(case, segment.type), length / count, soil, damping))
     return float(f"{STABLE * min(steps):.1g}")
 
 
-def _longest(kind: LineType, length: float, soil: float, damping: float) -> float:
-    area = kind.diameter / kind.mass  # m² per kg of lying line
+def _longest(kind: LineType, diameter: float, length: float, soil: float, damping: float) -> float:
+    area = diameter / kind.mass  # m² per kg of lying line
     rates = [math.sqrt(kind.EA / kind.mass) / length, 0.5 * math.sqrt(soil * area), 0.5 * damping * area]
     rates.append(2.0 * math.sqrt(kind.EI / kind.mass) / length**2)
     return 1.0 / max(rates)

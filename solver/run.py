@@ -12,7 +12,8 @@ from .case.analysis import Analyses
 from .check import check
 from .model.build import Model, build
 from .model.line import harmonic_omega
-from .outcome import CaseError, FieldError, NotConverged
+from .model.slack import push_limits
+from .outcome import CaseError, FieldError, NotConverged, numerical
 from .plan import plan
 from .results.channels import make_channels, make_time_channels
 from .results.part import Chunk, OnProgress, Part, Progress, Result
@@ -83,7 +84,8 @@ def run_chunk(
     on_progress: OnProgress | None = None,
     threads: int = 1,
 ) -> Part:
-    """Do one chunk. An analysis that does not converge is in the part's `failures`; what it does not need goes on.
+    """Do one chunk. An analysis that does not converge, or whose arithmetic breaks down, is in the part's `failures`; what
+    does not need it goes on.
 
     checkpoint : what a former attempt at this chunk offered through its progress.
     Raises CaseError and DataError when the question is wrong; whatever `on_progress` raises passes through.
@@ -92,18 +94,29 @@ def run_chunk(
     tell(Progress(0.0, "loading compiled kernels (a first start compiles them, a minute or more)"))
     compile_time = warm_up() + (warm_up_time_domain() if chunk.kind == "time" else 0.0)
     asked = case.analyses.requested()
-    model = build(case, data)
-    tell(Progress(0.02, "statics"))
+    warnings: tuple[str, ...] = ()
     try:
-        static = solve_statics(model)
+        with numerical("statics"):
+            model = build(case, data)
+            warnings = model.warnings
+            tell(Progress(0.02, "statics"))
+            static = solve_statics(model)
+        if chunk.kind == "time":
+            return _time_chunk(model, static, chunk, checkpoint, tell, threads, compile_time)
+        with numerical("results"):
+            return _linear_chunk(model, static, asked, tell, compile_time)
     except NotConverged as failure:
-        summary: dict[str, Any] = {
-            "case": case.name, "analyses": list(asked), "warnings": list(model.warnings),
+        return Part({
+            "case": case.name, "analyses": list(asked), "warnings": list(warnings),
             "failures": dict.fromkeys(asked, f"{failure}"), "compile_time": compile_time,
-        }  # fmt: skip
-        return Part(summary)
-    if chunk.kind == "time":
-        return _time_chunk(model, static, chunk, checkpoint, tell, threads, compile_time)
+        })  # fmt: skip
+
+
+def _linear_chunk(
+    model: Model, static: StaticState, asked: tuple[str, ...], tell: OnProgress, compile_time: float
+) -> Part:
+    """All but the time domain: frequency domain, modes, and the results of the three."""
+    case = model.case
     failures: dict[str, str] = {}
     frequency = linear_analysis(model, static, asked, tell, failures)
     modes = modes_analysis(model, static, frequency, asked, tell, failures)
@@ -168,13 +181,16 @@ def _time_chunk(
         tell(Progress(0.05 + 0.93 * share, f"time domain, {len(seeds)} seeds, {100 * share:.0f} %", save))
 
     try:
-        record, timing = march_ensemble(model, static, spec, seeds, threads, report, checkpoint)
+        with numerical("time_domain"):
+            record, timing = march_ensemble(model, static, spec, seeds, threads, report, checkpoint)
     except NotConverged as failure:
         return Part({**about, "failures": {"time_domain": str(failure)}})
     most = max(line.nodes for line in static.lines)
     lines = [
-        {"name": line.name, "gap": most - line.nodes, "arc_length": line.element_arc.tolist()} for line in static.lines
-    ]
+        {"name": line.name, "gap": most - line.nodes, "arc_length": line.element_arc.tolist(),
+         "push_limits": push_limits(line.arrays)}
+        for line in static.lines
+    ]  # fmt: skip
     omega, random = harmonic_omega(model.case), bool(model.case.environment.random)
     periodic = omega is None and whole_period(spec, timing.duration)
     part = time_part(record, timing, lines, low_border(model), omega, random, periodic)

@@ -12,6 +12,7 @@ from ..forces import axial
 from ..model.build import Model
 from ..model.line import LineModel
 from ..waves.spectra import hs_in_band, significant_height
+from .slack import linear_warnings
 from .solved import Solved
 from .statistics import combined_maximum, most_probable_maximum, significant
 
@@ -41,6 +42,8 @@ def make_summary(solved: Solved, analyses: tuple[str, ...], compile_time: float)
     found = [*solved.model.warnings, *solved.static.warnings]
     if solved.frequency is not None:
         found += solved.frequency.warnings
+        if "frequency_domain" in out:
+            found += linear_warnings(solved, out["frequency_domain"]["lines"])
     out["warnings"] = list(dict.fromkeys(found))
     out["failures"] = dict(solved.failures)
     out["provenance"] = provenance(solved.model)

@@ -15,6 +15,7 @@ from ..time_domain.statistics import band_variances, first_harmonic, over_seeds,
 from .channel import Axis
 from .channels import Made, channel
 from .part import Part
+from .slack import time_slack, time_slack_warnings
 
 Array = np.ndarray
 KEY = "time_domain_part"
@@ -25,7 +26,7 @@ def time_part(
     record: Record, timing: Timing, lines: list[dict[str, Any]], border: float, omega: float | None, random: bool,
     periodic: bool,
 ) -> Part:  # fmt: skip
-    """One chunk's seeds as arrays that merge. lines : name, gap (padding elements) and arc_length of each.
+    """One chunk's seeds as arrays that merge. lines : name, gap (padding elements), arc_length and push_limits of each.
 
     omega : the frequency of regular waves or prescribed motion, None without; random : whether there are random waves.
     periodic : whether the record is a whole number of periods of everything that moves.
@@ -35,6 +36,7 @@ def time_part(
     arrays = {
         "vessel": record.vessel.astype(np.float32), "top": record.tension[:, -1].copy(), "ends": record.ends.astype(np.float32),
         "tension_low": low, "tension_high": high, "tension_mean": mean, "lowest": record.lowest, "highest": record.highest,
+        "slack": record.slack,
     }  # fmt: skip
     if omega is not None:
         arrays["harmonic"] = first_harmonic(record.tension, step, omega)
@@ -116,8 +118,8 @@ def merge_time(parts: list[Part]) -> TimeResult | None:
 
 
 def time_warnings(result: TimeResult) -> list[str]:
-    """What speaks against the length of the step, as sentences."""
-    return [one.sentence(result.head["h"]) for one in worst(result.head["findings"])]
+    """What speaks against the length of the step, and lines that go slack, as sentences."""
+    return [one.sentence(result.head["h"]) for one in worst(result.head["findings"])] + time_slack_warnings(result)
 
 
 def time_summary(result: TimeResult) -> dict[str, Any]:
@@ -160,6 +162,7 @@ def _line(result: TimeResult, line: dict[str, Any]) -> dict[str, Any]:
         "tension_std_error": {band: stats[f"{band}_error"].tolist() for band in ("wf", "lf")},
         "end_b_tension": {"min": float(reaction.min()), "max": float(reaction.max())},
         "end_b_max_per_seed": reaction.max(axis=0).astype(float).tolist(),
+        "slack": time_slack(result, name),
     }
     if "harmonic" in result.arrays:
         out["tension_first_harmonic"] = result.elements("harmonic", name).mean(axis=-1).tolist()

@@ -11,6 +11,7 @@ from ..forces import axial
 from ..model.body import VesselBody
 from ..model.build import Model
 from ..model.line import LineModel, has_current
+from ..model.slack import static_warnings
 from .newton import State, equilibrium
 from .pretension import place, still_water
 from .start import first_shape
@@ -137,12 +138,7 @@ def _warnings(model: Model, lines: Sequence[LineModel], state: State) -> tuple[s
         found += model.vessel.drift_warnings(model.wave_systems, float(state.position[5]))
     for line, shape in zip(lines, state.shapes, strict=True):
         tension = axial.tension(line.arrays, shape)
-        slack = int(np.sum(tension < 0))
-        if slack:
-            found.append(
-                f"line {line.name!r}: {slack} of {tension.size} elements are slack in static equilibrium (lowest tension "
-                f"{tension.min() / 1e3:.3g} kN); a folded shape need not be the only one: check length and ends"
-            )
+        found += static_warnings(line, tension)
         if np.any(shape[:, 2] > 0) and np.any(shape[:, 2] < 0) and has_current(line.arrays):
             found.append(f"line {line.name!r} pierces the surface in a current; the dry part carries no drag")
     return tuple(found)

@@ -75,7 +75,8 @@ class Run:
                 self.vessel = VesselLoads(model, self.waves, float(static.position[5]), self.time.h)
             self.water = Water(model, self.waves, padded_shapes(static), spec.wave_kinematics)
         element = min(float(line.arrays.L.min()) for line in static.lines)
-        tension = max(float(np.abs(force).max()) for force in static.state.end_forces)
+        weight = max(float(line.arrays.w_dry.sum()) for line in static.lines)
+        tension = max(*(float(np.abs(force).max()) for force in static.state.end_forces), 1e-3 * weight)
         self.stiffest = max(float(line.arrays.EA.max()) for line in static.lines)
         self.limits = np.array(
             [spec.tolerance * element, 100.0 * spec.tolerance * tension, spec.max_iterations, REFRESH]

@@ -31,7 +31,7 @@ class Record:
 
     seeds : numbers; vessel : (n, S, 6) from the static position [m, rad]; tension : (n, N, L, S) float32 of elements,
     padding included; ends : (n, 2, L, S) reaction at end b and end a [N]; lowest, highest : (N, L, S) over every step;
-    findings : what speaks against the length of the step.
+    slack : (N, L, S) share of the kept time in which an element is slack; findings : what speaks against the step.
     """
 
     seeds: list[int]
@@ -40,6 +40,7 @@ class Record:
     ends: Array
     lowest: Array
     highest: Array
+    slack: Array
     iterations: int = 0
     retries: int = 0
     wall_time: float = 0.0
@@ -156,8 +157,8 @@ def _gather(run: Run, blocks: list[Block]) -> Record:
         np.concatenate([block.out[0] for block in blocks], axis=1),
         np.concatenate([seeds_last(block.out[1]) for block in blocks], axis=-1),
         np.concatenate([seeds_last(block.out[2]) for block in blocks], axis=-1),
-        lowest, highest, int(sum(block.counts[0] for block in blocks)), int(sum(block.counts[1] for block in blocks)),
-        findings=found,
+        lowest, highest, joined("slack") / run.time.kept, int(sum(block.counts[0] for block in blocks)),
+        int(sum(block.counts[1] for block in blocks)), findings=found,
     )  # fmt: skip
-    turn_back(run.static, run.turned, (record.tension, record.lowest, record.highest), record.ends)
+    turn_back(run.static, run.turned, (record.tension, record.lowest, record.highest, record.slack), record.ends)
     return record

@@ -41,7 +41,7 @@ class Finding:
     """One thing that speaks against the step. place : arc length from end a, or the distance gone for `reach` [m]."""
 
     line: str
-    what: Literal["kink", "blow", "reach"]
+    what: Literal["kink", "snatch", "blow", "reach"]
     value: float
     place: float
 
@@ -63,6 +63,11 @@ class Finding:
                 f"in a step of {h:g} s (refused above {100 * BLOW_REFUSED:g} %); peaks after such blows vary by several "
                 "per cent from step to step: compare with half the step, or use a softer or damped seabed"
             )
+        if self.what == "snatch":
+            return (
+                f"{where}: the line was slack, and as it tightens tension bends by {100 * self.value:.2g} % of its range "
+                f"within a step of {h:g} s (smooth below {100 * KINK_WARNED:g} %); compare its peak with half the step"
+            )
         return (
             f"{where}: within a step of {h:g} s tension bends by {100 * self.value:.2g} % of its range (smooth below "
             f"{100 * KINK_WARNED:g} %, refused above {100 * KINK_REFUSED:g} %); compare with half the step"
@@ -80,7 +85,7 @@ def findings(run: Run, seen: Seen) -> list[Finding]:
             found = [replace(one, place=line.length - one.place) for one in found]
         out += [*found, *_reaches(run, line, of_line)]
     for one in out:
-        if one.value > limits[one.what]:
+        if one.value > limits.get(one.what, np.inf):
             raise NotConverged(
                 "time_domain", f"the step is too long: {one.sentence(run.time.h)}.",
                 "Use a smaller step, a softer seabed with a wider transition, or look for a line that snaps slack there.",
@@ -99,14 +104,21 @@ def worst(found: list[dict[str, Any]]) -> list[Finding]:
 
 
 def _kinks(line: LineModel, seen: Seen) -> Iterator[Finding]:
-    """Second differences of tension against its range, element by element and seed by seed (T16)."""
+    """Second differences of tension against its range, element by element and seed by seed (T16).
+
+    A seed in which the line gives way (L17) has them whatever the step, when it tightens again: a snatch, never refused.
+    """
     gap = seen.kink.shape[0] - (line.nodes - 1)
     spread = seen.highest[gap:] - seen.lowest[gap:]
     judged = _moving(line, seen)[gap:]
     ratio = np.where(judged, seen.kink[gap:] / np.where(judged, spread, 1.0), 0.0)
-    element = int(np.argmax(ratio.max(axis=1)))
-    if ratio[element].max() > KINK_WARNED:
-        yield Finding(line.name, "kink", float(ratio[element].max()), float(line.element_arc[element]))
+    gave_way = np.any(seen.lowest[gap:] < -(line.arrays.limit * line.arrays.EA)[:, None], axis=0)
+    kinds: tuple[tuple[Literal["kink", "snatch"], Array], ...] = (("kink", ~gave_way), ("snatch", gave_way))
+    for what, seeds in kinds:
+        worst_of = np.where(seeds, ratio, 0.0).max(axis=1)
+        element = int(np.argmax(worst_of))
+        if worst_of[element] > KINK_WARNED:
+            yield Finding(line.name, what, float(worst_of[element]), float(line.element_arc[element]))
 
 
 def _moving(line: LineModel, seen: Seen) -> Array:

@@ -15,7 +15,7 @@ from .model.vessel import VesselModel
 from .modes.assemble import assemble
 from .modes.equivalent import equivalent_coefficients
 from .modes.solve import line_shapes, solve_modes
-from .outcome import NotConverged
+from .outcome import NotConverged, numerical
 from .results.part import OnProgress, Progress
 from .results.solved import ModesResult
 from .statics.newton import vessel_coupling
@@ -41,7 +41,8 @@ def linear_analysis(
         tell(Progress(0.1 + 0.6 * float(done), f"frequency domain, iteration {iteration}, change {change:.1e}"))
 
     try:
-        return solve_frequency_domain(model, static, spec, follow)
+        with numerical("frequency_domain"):
+            return solve_frequency_domain(model, static, spec, follow)
     except NotConverged as failure:
         if wanted:
             failures["frequency_domain"] = str(failure)
@@ -63,7 +64,8 @@ def modes_analysis(
         return None
     tell(Progress(0.75, "modes"))
     try:
-        return natural_modes(model, static, frequency, spec.count)
+        with numerical("modes"):
+            return natural_modes(model, static, frequency, spec.count)
     except NotConverged as failure:
         failures["modes"] = str(failure)
         return None

@@ -7,6 +7,8 @@ by a caller's own progress callback and passes through untouched.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -76,6 +78,32 @@ class NotConverged(SlowdriftError):
     def __init__(self, analysis: str, message: str, remedy: str):
         self.analysis, self.message, self.remedy = analysis, message, remedy
         super().__init__(f"{message} {remedy}".strip())
+
+
+#: what the words of a ValueError hold when numbers, not the program, are at fault
+NUMBERS = ("infs or NaNs", "NaN to integer", "math domain error", "singular", "did not converge")
+
+
+@contextmanager
+def numerical(analysis: str, line: str | None = None) -> Iterator[None]:
+    """Turn what arithmetic and linear algebra raise inside an analysis into NotConverged; faults of the program pass.
+
+    numpy's LinAlgError is a ValueError, as are SciPy's words on matrices that are not finite.
+    """
+    try:
+        yield
+    except (ArithmeticError, ValueError) as error:
+        named = type(error).__name__
+        text = str(error).strip().rstrip(".")
+        known = isinstance(error, ArithmeticError) or named == "LinAlgError"
+        if not known and not any(words.lower() in text.lower() for words in NUMBERS):
+            raise
+        where = f" for line {line!r}" if line is not None else ""
+        raise NotConverged(
+            analysis, f"the arithmetic of the analysis ({analysis}) broke down{where}: {text or named}.",
+            "Look for lines that are slack, folded or neutral in water, nodes that coincide, and stiffnesses or masses that "
+            "are nearly zero.",
+        ) from error  # fmt: skip
 
 
 class Cancelled(SlowdriftError):

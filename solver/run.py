@@ -14,9 +14,10 @@ from .case.analysis import Analyses
 from .check import check
 from .model.build import Model, build
 from .model.line import harmonic_omega
+from .model.slack import push_limits
 from .modes.natural import longest_period
 from .modes.vessel import unreached_modes
-from .outcome import CaseError, FieldError, Interrupted, NotConverged
+from .outcome import CaseError, FieldError, Interrupted, NotConverged, numerical
 from .plan import plan
 from .results.channels import make_channels, make_time_channels
 from .results.doubt import add_doubtful
@@ -114,7 +115,8 @@ def run_chunk(
     on_progress: OnProgress | None = None,
     threads: int = 1,
 ) -> Part:
-    """Do one chunk. An analysis that does not converge is in the part's `failures`; what it does not need goes on.
+    """Do one chunk. An analysis that does not converge, or whose arithmetic breaks down, is in the part's `failures`; what
+    does not need it goes on.
 
     checkpoint : what a former attempt at this chunk offered through its progress.
     Raises CaseError and DataError when the question is wrong; whatever `on_progress` raises passes through.
@@ -123,21 +125,25 @@ def run_chunk(
     tell(Progress(0.0, LOADING))
     compile_time = warm_up() + (warm_up_time_domain() if chunk.kind == "time" else 0.0)
     asked = case.analyses.requested()
-    model = build(case, data)
-    tell(Progress(0.02, "statics"))
+    warnings: tuple[str, ...] = ()
     try:
-        static = solve_statics(model)
+        with numerical("statics"):
+            model = build(case, data)
+            warnings = model.warnings
+            tell(Progress(0.02, "statics"))
+            static = solve_statics(model)
+        if model.case.environment.random and {"frequency_domain", "time_domain"} & set(asked):
+            with numerical("modes"):
+                static = replace(static, warnings=(*static.warnings, *unreached_modes(model, static)))
+        if chunk.kind == "time":
+            return _time_chunk(model, static, chunk, checkpoint, tell, threads, compile_time)
+        with numerical("results"):
+            return _frequency_chunk(model, static, tell, compile_time)
     except NotConverged as failure:
-        summary: dict[str, Any] = {
-            "case": case.name, "analyses": list(asked), "warnings": list(model.warnings),
+        return Part({
+            "case": case.name, "analyses": list(asked), "warnings": list(warnings),
             "failures": dict.fromkeys(asked, f"{failure}"), "compile_time": compile_time,
-        }  # fmt: skip
-        return Part(summary)
-    if model.case.environment.random and {"frequency_domain", "time_domain"} & set(asked):
-        static = replace(static, warnings=(*static.warnings, *unreached_modes(model, static)))
-    if chunk.kind == "time":
-        return _time_chunk(model, static, chunk, checkpoint, tell, threads, compile_time)
-    return _frequency_chunk(model, static, tell, compile_time)
+        })  # fmt: skip
 
 
 def _frequency_chunk(model: Model, static: StaticState, tell: OnProgress, compile_time: float) -> Part:
@@ -215,7 +221,8 @@ def _time_chunk(
         tell(Progress(0.05 + 0.93 * share, f"time domain, {len(seeds)} seeds, {100 * share:.0f} %", save))
 
     try:
-        record, timing = march_ensemble(model, static, spec, seeds, threads, report, checkpoint)
+        with numerical("time_domain"):
+            record, timing = march_ensemble(model, static, spec, seeds, threads, report, checkpoint)
     except NotConverged as failure:
         about["failures"] = {"time_domain": str(failure)}
         if not isinstance(failure, StepTooLong) or failure.partial is None:
@@ -224,7 +231,8 @@ def _time_chunk(
     most = max(line.nodes for line in static.lines)
     lines = [
         {"name": line.name, "gap": most - line.nodes, "arc_length": line.element_arc.tolist(), "length": line.length,
-         "anchor": line.anchor_end, "allowed": allowed_tension(line).tolist()} for line in static.lines
+         "anchor": line.anchor_end, "allowed": allowed_tension(line).tolist(),
+         "push_limits": push_limits(line.arrays)} for line in static.lines
     ]  # fmt: skip
     omega, random = harmonic_omega(model.case), bool(model.case.environment.random)
     periodic = omega is None and "failures" not in about and whole_period(spec, timing.duration)

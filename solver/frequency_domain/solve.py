@@ -9,9 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..case.analysis import FrequencyDomain
+from ..forces import axial
 from ..model.build import Model
 from ..model.line import has_current
 from ..model.linear import LineGeometry, line_geometry
+from ..model.slack import slack_elements
 from ..outcome import NotConverged
 from ..statics.newton import vessel_coupling
 from ..statics.solve import StaticState, settle
@@ -52,9 +54,10 @@ def solve_frequency_domain(
 ) -> FrequencyResult:
     """Iterate drag linearisation, static position and both bands until every σ of relative velocity settles.
 
-    Raises NotConverged with the last change when it does not.
+    Raises NotConverged with the last change when it does not, and for a line that is slack all over.
     """
     started = time.perf_counter()
+    _refuse_slack(static)
     drive = driver(model, static, spec)
     position = _Position(model, static, drive)
     quadratic = model.vessel.quadratic if model.vessel is not None else np.zeros(6)
@@ -86,6 +89,16 @@ def solve_frequency_domain(
         f"{moved:.2e} in position (wanted {spec.tolerance:.0e}).",
         "Raise max_iterations or the tolerance; look for slack lines or a line at resonance without drag.",
     )
+
+
+def _refuse_slack(static: StaticState) -> None:
+    """Raise NotConverged for a line none of whose elements carries tension: there is nothing to linearise about."""
+    for line, shape in zip(static.lines, static.state.shapes, strict=True):
+        if slack_elements(line.arrays, axial.tension(line.arrays, shape)).all():
+            raise NotConverged(
+                "frequency_domain", f"line {line.name!r} is slack over its whole length in static equilibrium, and a slack "
+                "line has no linear answer.", "Use the time domain, or shorten the line.",
+            )  # fmt: skip
 
 
 class _Position:

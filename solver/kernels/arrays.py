@@ -104,6 +104,7 @@ class Watch(NamedTuple):
     """What is seen at every watched step, besides the outputs (T16, T17); that of kept steps is part of a checkpoint."""
 
     range: Array  # (2, N, Q) least and largest tension
+    slack: Array  # (N, Q) kept steps in which an element is slack: axial force at most 0
     last: Array  # (2, N, Q) tension one and two steps ago
     kink: Array  # (N, Q) largest second difference of tension from step to step
     bed: Array  # (4, P, Q) least, largest and last force of the bed on a node, and its largest change in a step

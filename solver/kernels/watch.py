@@ -15,7 +15,7 @@ LOG2 = math.log(2.0)
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
 def watch_step(setup, state, work, watch):  # type: ignore[no-untyped-def]
-    """Take the end of a kept step into the extremes of tension, its kinks, and the blows of the bed (T16, T17).
+    """Take the end of a kept step into the extremes of tension, its kinks, slack, and the blows of the bed (T16, T17).
 
     Returns whether the tension at an end of some line has a new extreme.
     """
@@ -25,6 +25,7 @@ def watch_step(setup, state, work, watch):  # type: ignore[no-untyped-def]
         for q in range(Q):
             strain = work.length[j, q] / C[j, EL, q] - 1.0
             T = C[j, EA, q] * (strain + released(strain, C[j, LIMIT, q], C[j, KNEE, q])[0])
+            watch.slack[j, q] += 1.0 if T <= 0.0 else 0.0
             one, two = watch.last[0, j, q], watch.last[1, j, q]
             kink = abs(T - 2.0 * one + two)
             watch.range[0, j, q] = min(watch.range[0, j, q], T)

@@ -14,6 +14,7 @@ from ..model.build import Model
 from ..waves.spectra import hs_in_band, significant_height
 from .line_types import line_types_summary
 from .line_values import grounded_length, largest, utilisation
+from .slack import linear_warnings
 from .solved import END_FORCES, ORIGINS, Solved, Spectra
 from .statistics import combined_maximum, most_probable_maximum, significant
 from .strain import allowed_tension, strain_warnings
@@ -45,6 +46,8 @@ def make_summary(solved: Solved, analyses: tuple[str, ...], compile_time: float)
     found = [*solved.model.warnings, *solved.static.warnings]
     if solved.frequency is not None:
         found += solved.frequency.warnings
+        if "frequency_domain" in out:
+            found += linear_warnings(solved, out["frequency_domain"]["lines"])
     found += _strains(solved, out)
     out["warnings"] = list(dict.fromkeys(found))
     out["failures"] = dict(solved.failures)

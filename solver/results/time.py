@@ -18,6 +18,7 @@ from .channel import Axis
 from .channels import Made, channel
 from .part import Part
 from .sampling import sampling_summary, sampling_warnings
+from .slack import time_slack, time_slack_warnings
 from .strain import strain_warnings
 
 Array = np.ndarray
@@ -34,7 +35,8 @@ def time_part(
     record: Record, timing: Timing, lines: list[dict[str, Any]], border: float, omega: float | None, random: bool,
     periodic: bool,
 ) -> Part:  # fmt: skip
-    """One chunk's seeds as arrays that merge. lines : name, gap (padding elements), arc_length, length and anchor of each.
+    """One chunk's seeds as arrays that merge. lines : name, gap (padding elements), arc_length, length, anchor, allowed
+    and push_limits of each.
 
     omega : the frequency of regular waves or prescribed motion, None without; random : whether there are random waves.
     periodic : whether the record is a whole number of periods of everything that moves.
@@ -44,7 +46,7 @@ def time_part(
     arrays = {
         "vessel": record.vessel.astype(np.float32), "top": record.tension[:, -1].copy(), "ends": record.ends.astype(np.float32),
         "tension_low": low, "tension_high": high, "tension_mean": mean, "lowest": record.lowest, "highest": record.highest,
-        "ends_range": record.ends_range,
+        "ends_range": record.ends_range, "slack": record.slack,
     }  # fmt: skip
     if omega is not None:
         arrays["harmonic"] = first_harmonic(record.tension, step, omega)
@@ -141,9 +143,9 @@ def merge_time(parts: list[Part]) -> TimeResult | None:
 
 
 def time_warnings(result: TimeResult) -> list[str]:
-    """What speaks against the length of the step, of the record, and against the strains, as sentences."""
+    """What speaks against the length of the step and of the record, lines that go slack, and strains, as sentences."""
     steps = [one.sentence(result.head["h"]) for one in worst(result.head["findings"])]
-    return [*steps, *sampling_warnings(result), *_strains(result)]
+    return [*steps, *time_slack_warnings(result), *sampling_warnings(result), *_strains(result)]
 
 
 def _strains(result: TimeResult) -> Iterator[str]:
@@ -192,6 +194,7 @@ def _line(result: TimeResult, line: dict[str, Any]) -> dict[str, Any]:
         "tension_std_error": {band: stats[f"{band}_error"].tolist() for band in ("wf", "lf")},
         **{what: _end_statistics(result, name, what) for what in ("end_a_tension", "end_b_tension", "anchor_vertical")},
         "end_b_max_per_seed": result.end_range(name, "end_b_tension")[1].tolist(),
+        "slack": time_slack(result, name),
         **_bed_statistics(result, name),
     }
     out["largest"] = _largest(line, highest, out)

@@ -12,6 +12,7 @@ from ..forces import axial
 from ..model.body import VesselBody
 from ..model.build import Model
 from ..model.line import LineModel, has_current
+from ..model.slack import static_warnings
 from ..vessel.balance import balance_warnings
 from ..vessel.rigid import turned_force
 from .newton import State, equilibrium
@@ -157,12 +158,7 @@ def _warnings(model: Model, lines: Sequence[LineModel], state: State) -> tuple[s
     found += floating_lines(model.case, {line.name: line.length for line in lines})
     for line, shape in zip(lines, state.shapes, strict=True):
         tension = axial.tension(line.arrays, shape)
-        slack = int(np.sum(tension < 0))
-        if slack:
-            found.append(
-                f"line {line.name!r}: {slack} of {tension.size} elements are slack in static equilibrium (lowest tension "
-                f"{tension.min() / 1e3:.3g} kN); a folded shape need not be the only one: check length and ends"
-            )
+        found += static_warnings(line, tension)
         if np.any(shape[:, 2] > 0) and np.any(shape[:, 2] < 0) and has_current(line.arrays):
             found.append(f"line {line.name!r} pierces the surface in a current; the dry part carries no drag")
     return tuple(found)

@@ -81,7 +81,8 @@ class Run:
     def _limits(self, tolerance: float, watched: int) -> Array:
         """Limits of the march: what ends a step (T3), and the number of the first step watched."""
         element = min(float(line.arrays.L.min()) for line in self.static.lines)
-        tension = max(float(np.abs(force).max()) for force in self.static.state.end_forces)
+        weight = max(float(line.arrays.w_dry.sum()) for line in self.static.lines)
+        tension = max(*(float(np.abs(force).max()) for force in self.static.state.end_forces), 1e-3 * weight)
         return np.array(
             [tolerance * element, 100.0 * tolerance * tension, self.spec.max_iterations, REFRESH, watched], dtype=float
         )

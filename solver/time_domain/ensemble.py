@@ -34,8 +34,8 @@ class Record:
     seeds : numbers; vessel : (n, S, 6) from the static position [m, rad]; tension : (n, N, L, S) float32 of elements,
     padding included; ends : (n, 6, L, S), rows ENDS: size and vertical part of the force on the supports at end b and end a
     [N], length on the bed, arc length of the touchdown point [m]; lowest, highest : (N, L, S) over every step;
-    ends_range : (2, 4, L, S) least and largest of the first four rows of `ends` over every step;
-    findings : what speaks against the length of the step.
+    ends_range : (2, 4, L, S) least and largest of the first four rows of `ends` over every step; slack : (N, L, S) share of
+    the kept time in which an element is slack; findings : what speaks against the length of the step.
     """
 
     seeds: list[int]
@@ -45,6 +45,7 @@ class Record:
     lowest: Array
     highest: Array
     ends_range: Array
+    slack: Array
     iterations: int = 0
     retries: int = 0
     wall_time: float = 0.0
@@ -166,14 +167,17 @@ def _gather(run: Run, blocks: list[Block], rows: int | None = None) -> Record:
     L = len(run.static.lines)
     parts = [Seen.of(block.watch, L) for block in blocks]
     seen = Seen(*(np.concatenate(values, axis=-1) for values in zip(*parts, strict=True)))
+    watched = lambda name: np.concatenate([by_line(getattr(block.watch, name), L) for block in blocks], axis=-1)  # noqa: E731
+    steps = max(blocks[0].step - run.time.build_up, 1)  # kept ones, of every block
     record = Record(
         [seed for block in blocks for seed in block.seeds],
         np.concatenate([block.out[0][:rows] for block in blocks], axis=1),
         np.concatenate([by_line(block.out[1][:rows], L) for block in blocks], axis=-1),
         np.concatenate([by_line(block.out[2][:rows], L) for block in blocks], axis=-1),
-        seen.lowest, seen.highest, np.concatenate([by_line(block.watch.ends, L) for block in blocks], axis=-1),
+        seen.lowest, seen.highest, watched("ends"), watched("slack") / steps,
         int(sum(block.counts[0] for block in blocks)), int(sum(block.counts[1] for block in blocks)),
         findings=observed(run, seen),
     )  # fmt: skip
-    turn_back(run.static, run.turned, (record.tension, record.lowest, record.highest), record.ends, record.ends_range)
+    elements = (record.tension, record.lowest, record.highest, record.slack)
+    turn_back(run.static, run.turned, elements, record.ends, record.ends_range)
     return record

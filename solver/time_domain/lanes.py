@@ -167,7 +167,8 @@ def make_watch(nodes: int, lanes: int) -> Watch:
     none = lambda *shape: np.full((*shape, lanes), np.nan)  # noqa: E731
     unseen = lambda n: np.stack([np.full((n, lanes), np.inf), np.full((n, lanes), -np.inf)])  # noqa: E731
     bed = np.concatenate([unseen(nodes), none(1, nodes), np.zeros((1, nodes, lanes))])
-    return Watch(unseen(nodes - 1), none(2, nodes - 1), np.zeros((nodes - 1, lanes)), bed, unseen(4), np.zeros(lanes))
+    elements = lambda: np.zeros((nodes - 1, lanes))  # noqa: E731
+    return Watch(unseen(nodes - 1), elements(), none(2, nodes - 1), elements(), bed, unseen(4), np.zeros(lanes))
 
 
 def make_work(state: State, rows: int, first_wave: int) -> Work:

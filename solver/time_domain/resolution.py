@@ -53,7 +53,7 @@ class Finding:
     """One thing that speaks against the step. place : arc length from end a, or the distance gone for `reach` [m]."""
 
     line: str
-    what: Literal["kink", "blow", "reach"]
+    what: Literal["kink", "snatch", "blow", "reach"]
     value: float
     place: float
 
@@ -62,8 +62,9 @@ class Finding:
 
     @property
     def severity(self) -> float:
-        """The value over the limit above which it is refused."""
-        return self.value / {"kink": KINK_REFUSED, "blow": BLOW_REFUSED, "reach": REACH_REFUSED}[self.what]
+        """The value over the limit above which it is refused; 0 for a snatch, which is never refused."""
+        limits = {"kink": KINK_REFUSED, "blow": BLOW_REFUSED, "reach": REACH_REFUSED, "snatch": np.inf}
+        return self.value / limits[self.what]
 
     def fact(self, h: float) -> str:
         """What was found, with the value and the limits."""
@@ -79,6 +80,11 @@ class Finding:
                 f"{where}: the node strikes the seabed, whose force on it changes by {100 * self.value:.3g} % of its range "
                 f"in a step of {h:g} s (refused above {100 * BLOW_REFUSED:g} %)"
             )
+        if self.what == "snatch":
+            return (
+                f"{where}: the line was slack, and as it tightens tension bends by {100 * self.value:.3g} % of its range "
+                f"within a step of {h:g} s (smooth below {100 * KINK_WARNED:g} %)"
+            )
         return (
             f"{where}: within a step of {h:g} s tension bends by {100 * self.value:.3g} % of its range (smooth below "
             f"{100 * KINK_WARNED:g} %, refused above {100 * KINK_REFUSED:g} %)"
@@ -88,6 +94,7 @@ class Finding:
         """The fact with what to do about it, for a result that stands."""
         advice = {
             "kink": "; compare with half the step",
+            "snatch": "; compare its peak with half the step",
             "reach": "; compare with wave_kinematics: mean",
             "blow": "; peaks after such blows vary by several per cent from step to step: compare with half the step, or "
             "use a softer or damped seabed",
@@ -149,14 +156,21 @@ def worst(found: list[dict[str, Any]]) -> list[Finding]:
 
 
 def _kinks(line: LineModel, seen: Seen) -> Iterator[Finding]:
-    """Second differences of tension against its range, element by element and seed by seed (T16)."""
+    """Second differences of tension against its range, element by element and seed by seed (T16).
+
+    A seed in which the line gives way (L17) has them whatever the step, when it tightens again: a snatch, never refused.
+    """
     gap = seen.kink.shape[0] - (line.nodes - 1)
     spread = seen.highest[gap:] - seen.lowest[gap:]
     judged = _moving(line, seen)[gap:]
     ratio = np.where(judged, seen.kink[gap:] / np.where(judged, spread, 1.0), 0.0)
-    element = int(np.argmax(ratio.max(axis=1)))
-    if ratio[element].max() > KINK_WARNED:
-        yield Finding(line.name, "kink", float(ratio[element].max()), float(line.element_arc[element]))
+    gave_way = np.any(seen.lowest[gap:] < -(line.arrays.limit * line.arrays.EA)[:, None], axis=0)
+    kinds: tuple[tuple[Literal["kink", "snatch"], Array], ...] = (("kink", ~gave_way), ("snatch", gave_way))
+    for what, seeds in kinds:
+        worst_of = np.where(seeds, ratio, 0.0).max(axis=1)
+        element = int(np.argmax(worst_of))
+        if worst_of[element] > KINK_WARNED:
+            yield Finding(line.name, what, float(worst_of[element]), float(line.element_arc[element]))
 
 
 def _moving(line: LineModel, seen: Seen) -> Array:

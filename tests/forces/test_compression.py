@@ -82,7 +82,7 @@ def test_compression_ends_at_the_euler_load(kind: str) -> None:
     strains = -np.concatenate([near, np.geomspace(near[-1], 0.999, 400)[1:]])
     T = _tension(line, strains)
     assert np.all(np.diff(T) < 1e-15 * line.EA[0])  # but for the last bit
-    assert np.all(np.diff(T[::200]) < 0)
+    assert np.all(np.diff(T[[0, 200, 400, -1]]) < 0)
     assert -euler - extra < T.min() < -euler - 0.4 * extra
     slope = np.diff(T[:601]) / np.diff(near)
     assert np.abs(np.diff(slope)).max() < 0.01 * line.EA[0]  # no corner

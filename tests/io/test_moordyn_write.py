@@ -142,6 +142,11 @@ def test_pretensions_need_statics_and_what_is_dropped_is_listed() -> None:
     assert written.text.count("wire ") == 1 + 24  # one type, four lines of six
     dropped = " ".join(written.report.dropped)
     assert all(word in dropped for word in ("vessel", "seastates", "breaking_load", "transition", "names of lines"))
+    assert "compression" not in dropped
+    pushes = load_case((ROOT / "examples" / "fpso-2000m.yaml").read_bytes())
+    assert "line_types.wire.compression: allowed; MoorDyn's lines carry no" in " ".join(
+        write_deck(pushes, placed).report.dropped
+    )
 
 
 def test_prescribed_motion_is_left_to_the_driver() -> None:

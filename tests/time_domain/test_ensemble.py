@@ -48,7 +48,7 @@ def _line(turn: float = 0.0, **spec: Any) -> dict[str, Any]:
 
 
 def _same(one: Record, other: Record, tolerance: float) -> None:
-    for name in ("vessel", "tension", "ends", "lowest", "highest"):
+    for name in ("vessel", "tension", "ends", "lowest", "highest", "slack"):
         a, b = getattr(one, name), getattr(other, name)
         np.testing.assert_allclose(a, b, rtol=tolerance, atol=tolerance * np.abs(a).max(initial=0.0), err_msg=name)
 
@@ -61,7 +61,7 @@ def together(source: Source) -> Record:
 def _pick(record: Record, index: list[int]) -> Record:
     return Record(
         [record.seeds[k] for k in index], record.vessel[:, index], record.tension[..., index], record.ends[..., index],
-        record.lowest[..., index], record.highest[..., index],
+        record.lowest[..., index], record.highest[..., index], record.slack[..., index],
     )  # fmt: skip
 
 

@@ -328,6 +328,8 @@ def _dropped(case: Case, report: Report) -> None:
     for name, kind in case.line_types.items():
         if kind.breaking_load is not None:
             report.dropped.append(f"line_types.{name}.breaking_load")
+        if kind.compression == "allowed":
+            report.dropped.append(f"line_types.{name}.compression: allowed; MoorDyn's lines carry no compression")
     for name, line in case.lines.items():
         for key in ("end_a", "end_b"):
             if getattr(line, key).motion is not None:

@@ -82,15 +82,37 @@ def end_block(K):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def newton_step(line, x, load, lam):  # type: ignore[no-untyped-def]
+def stiffen_across(line, x, mixed, K):  # type: ignore[no-untyped-def]
+    """Replace the tension in the transverse stiffness of every element by `mixed` (N,) [N] (S6a)."""
+    own = axial.tension(line, x)
+    for j in range(line.L.size):
+        d = x[j + 1] - x[j]
+        length = np.sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2])
+        extra = (mixed[j] - max(own[j], 0.0)) / length
+        for p in range(3):
+            for q in range(3):
+                value = -extra * d[p] * d[q] / (length * length)
+                if p == q:
+                    value += extra
+                i = 3 * j + p
+                K[i, HALF + q - p] += value
+                K[i + 3, HALF + q - p] += value
+                K[i, HALF + 3 + q - p] -= value
+                K[i + 3, HALF - 3 + q - p] -= value
+
+
+@njit(cache=True)
+def newton_step(line, x, load, lam, mixed):  # type: ignore[no-untyped-def]
     """One linearisation of a line in static equilibrium under its forces and a constant nodal `load` (N+1, 3) (S6).
 
+    lam : λ added to the diagonal [N/m]; mixed : tension that stiffens the elements across (N,) [N] (S6a).
     Returns (F, y, X, Kc, fc): nodal forces; interior step with ends held, (3(N-1),); interior displacement per unit end
     displacement, (3(N-1), 6), to be subtracted; condensed end stiffness (6, 6); end forces after the step y, (6,).
     """
     still = np.zeros_like(x)
     F = forces(line, x, still, still, still) + load
     K = stiffness(line, x, False)
+    stiffen_across(line, x, mixed, K)
     rows = x.size - 6
     band = K[3 : 3 + rows].copy()
     rhs = np.empty((rows, 7))

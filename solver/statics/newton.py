@@ -1,57 +1,46 @@
-"""Newton's iteration with a shrinking λI, for lines alone and for lines with their vessel (docs/theory.md, S5-S8)."""
+"""Static equilibrium: Newton's iteration with the tension as a second unknown; where it stalls, soft lines first.
+
+Equations S5-S6d of docs/theory.md; why this way: docs/decisions/0054-statics-globalisation.md.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import Protocol
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..forces import axial
+from ..kernels.line import LineArrays
 from ..model.line import LineModel
-from ..model.system import newton_step
 from ..outcome import NotConverged
+from .assembly import Assembly, Body, State, Step, end_forces, vessel_coupling
+
+__all__ = ["State", "equilibrium", "vessel_coupling"]
 
 Array = np.ndarray
-
-
-class Body(Protocol):
-    """What Newton's iteration asks of a vessel."""
-
-    def load(self, position: Array) -> Array:
-        """Loads without the lines at a position (6,) -> (6,) [N, N m]."""
-
-    def stiffness(self, position: Array) -> Array:
-        """-∂load/∂position (6, 6)."""
-
-    def arm_matrix(self, position: Array, arm: Array) -> Array:
-        """∂(fairlead)/∂position, (3, 6)."""
-
-    def fairlead(self, position: Array, arm: Array) -> Array:
-        """Fairlead in the solver's frame (3,) [m]."""
-
-    def geometric(self, position: Array, arm: Array, force: Array) -> Array:
-        """K_g of one fairlead under the force of its line on the vessel, (6, 6)."""
-
-    def moved(self, position: Array, step: Array) -> Array:
-        """The position after a step (6,)."""
+ATTEMPT = 100  # iterations of one attempt of Newton's, at most
+PATIENCE = 15  # iterations in which its residual must fall to a tenth
+NEAR = 0.02  # longest move, as a share of what is allowed, below which the matrix holds compression
+RELAX = 300  # iterations of the search with soft lines, at most
+STRETCH = (1.0 / 30.0, 1.0 / 1000.0, 0.0)  # strain under its own weight that a soft line may have, in turn
+FIRST_DAMPING = 0.1
+OVERSHOOT, SHORTENINGS = 0.3, 20  # work against the forces at a step's end over that at its start, and tries
+RELAXED = 1e-3  # residual at which the soft system is near enough to its equilibrium
 
 
 @dataclass
-class State:
-    """Positions of everything, and how the iteration went.
+class Point:
+    """Where the iteration stands.
 
-    shapes : node positions of each line, (N+1, 3) [m]; position : vessel, (6,) [m, rad];
-    end_forces : force of each line on its supports, end b then end a, (6,) [N].
+    shapes (N+1, 3) [m] and position (6,); mixed : tension that each element would have after the linear step [N].
     """
 
     shapes: list[Array]
     position: Array
-    end_forces: list[Array] = field(default_factory=list)
+    mixed: list[Array]
     iterations: int = 0
     residual: float = np.inf
-    converged: bool = False
+    worst: str = "the vessel"
 
 
 def equilibrium(
@@ -63,134 +52,158 @@ def equilibrium(
     loads : constant nodal loads of each line beyond its own forces, (N+1, 3) [N].
     tolerance : largest residual force as a share of the largest element tension; never asked below round-off.
 
+    Newton's iteration first; where it does not settle, a line search on soft lines, then Newton's again (S6c).
     Raises NotConverged with what is largest and where.
     """
-    shapes, position = [shape.copy() for shape in state.shapes], state.position.copy()
-    ease, previous, worst, residual = 1.0, np.inf, "", np.inf
-    for iteration in range(1, max_iterations + 1):
-        steps = [
-            newton_step(line.arrays, shape, load, ease * _transverse(line, shape))
-            for line, shape, load in zip(lines, shapes, loads, strict=True)
-        ]
-        scale = _scale(lines, shapes)
-        residual, worst = _residual(lines, steps, body, position, scale)
-        if on_iteration:
-            on_iteration(iteration, residual)
-        if not np.isfinite(residual):
+    system = Assembly(lines, loads, body)
+    start = Point([shape.copy() for shape in state.shapes], state.position.copy(), [])
+    start.mixed = list(state.tensions) or _even_tension(system, start.shapes)
+    damping = 0.0 if state.tensions else FIRST_DAMPING
+    tell = on_iteration or (lambda _iteration, _residual: None)
+    found, point = newton(system, start, tolerance, min(ATTEMPT, max_iterations), damping, tell)
+    if found is None:
+        point = replace(start, iterations=point.iterations, residual=point.residual, worst=point.worst)
+    for stretch in STRETCH:
+        left = max_iterations - point.iterations
+        if found is not None or left <= 0:
             break
-        if residual < max(tolerance, _round_off(lines, shapes) / scale):
-            forces = [_end_forces(step[0]) for step in steps]
-            return State(shapes, position, forces, iteration, residual * scale, True)
-        if np.isfinite(previous):  # λ follows the square of the residual: switched evolution relaxation
-            ease = min(ease * min(max(residual / previous, 0.3), 3.0) ** 2, 1.0)
-        previous = residual
-        delta = _body_step(lines, steps, body, position)
-        _advance(lines, shapes, steps, body, position, delta)
-        position = body.moved(position, delta) if body is not None else position
+        near = relax(system, point, stretch, min(RELAX, left), tell)
+        found, point = newton(system, near, tolerance, min(ATTEMPT, max_iterations - near.iterations), 0.0, tell)
+        if found is None:  # the next search goes on from where this one ended
+            point = replace(near, iterations=point.iterations, residual=point.residual, worst=point.worst)
+    if found is not None:
+        return found
     raise NotConverged(
         "statics",
-        f"statics did not converge in {max_iterations} iterations: the largest residual is {residual:.2e} of the "
-        f"largest tension, at {worst} (wanted {tolerance:.0e}).",
+        f"statics did not converge in {point.iterations} iterations: the largest residual is {point.residual:.2e} of the "
+        f"largest tension, at {point.worst} (wanted {tolerance:.0e}).",
         "Check lengths and end points there, use shorter elements, a wider seabed transition, or more max_iterations.",
     )
 
 
-def _transverse(line: LineModel, shape: Array) -> float:
-    """The transverse stiffness of an element, the natural size of λ [N/m]."""
-    mean = float(np.mean(np.abs(axial.tension(line.arrays, shape))))
-    weight = float(np.sum(line.arrays.w_dry))
-    return max(mean, 1e-3 * weight) / float(np.mean(line.arrays.L))
+def newton(
+    system: Assembly, start: Point, tolerance: float, most: int, damping: float, tell: Callable[[int, float], None]
+) -> tuple[State | None, Point]:
+    """Newton's iteration in positions and tensions (S6, S6a); the state where it converged, else None."""
+    point, previous, seen = start, np.inf, []
+    for _ in range(most):
+        lam = [max(damping, 1e-9) * stiff for stiff in _transverse(system, point.mixed)]
+        # compression softens an element across: Newton's matrix holds that near the end only, where it is exact
+        mixed = point.mixed if previous < NEAR else [np.maximum(tension, 0.0) for tension in point.mixed]
+        step = system.step(point.shapes, point.position, mixed, lam)
+        point = replace(point, iterations=point.iterations + 1, residual=step.residual, worst=step.worst)
+        tell(point.iterations, step.residual)
+        seen.append(step.residual)
+        if not (np.isfinite(step.residual) and np.isfinite(step.size)) or _stalled(seen):
+            break
+        scale = system.scale(point.shapes)
+        if step.residual < max(tolerance, system.round_off(point.shapes) / scale):
+            ends, tensions = [end_forces(force) for force in step.nodal], system.tensions(point.shapes)
+            residual = step.residual * scale
+            return State(point.shapes, point.position, ends, point.iterations, residual, True, tensions), point
+        if 0.0 < previous < np.inf:
+            damping = min(damping * min(max(step.size / previous, 0.1), 3.0) ** 2, 1.0)
+        previous = step.size
+        shapes, position = system.moved(point.shapes, point.position, step, step.limit)
+        mixed = [
+            _linear_tension(line, old, new) for line, old, new in zip(system.lines, point.shapes, shapes, strict=True)
+        ]
+        point = replace(point, shapes=shapes, position=position, mixed=mixed)
+    return None, point
 
 
-def _scale(lines: Sequence[LineModel], shapes: Sequence[Array]) -> float:
-    tensions = [
-        float(np.max(np.abs(axial.tension(line.arrays, shape)))) for line, shape in zip(lines, shapes, strict=True)
+def _stalled(seen: Sequence[float]) -> bool:
+    """Whether the residual has not fallen to a tenth in the last iterations."""
+    return len(seen) > 2 * PATIENCE and min(seen[-PATIENCE:]) > 0.1 * min(seen[:-PATIENCE])
+
+
+def relax(system: Assembly, start: Point, stretch: float, most: int, tell: Callable[[int, float], None]) -> Point:
+    """Towards the equilibrium of softer lines, each step searched along its length (S6b, S6c).
+
+    stretch : strain that the weight of a line may give it; 0 leaves the lines as they are.
+    """
+    weights = [_weight(line) for line in system.lines]
+    if stretch > 0.0:
+        system = system.with_arrays([
+            _softer(line.arrays, weight / stretch) for line, weight in zip(system.lines, weights, strict=True)
+        ])  # fmt: skip
+    sizes = [weight / float(np.mean(line.arrays.L)) for line, weight in zip(system.lines, weights, strict=True)]
+    point, ease = start, 1e-2
+    for _ in range(most):
+        mixed = [np.maximum(tension, 0.0) for tension in system.tensions(point.shapes)]
+        step = system.step(point.shapes, point.position, mixed, [ease * size for size in sizes], ease)
+        point = Point(point.shapes, point.position, mixed, point.iterations + 1, step.residual, step.worst)
+        tell(point.iterations, step.residual)
+        if step.residual < RELAXED or not np.isfinite(step.size):
+            break
+        work = system.work(step.nodal, point.position, step)
+        if work <= 0.0:  # against the forces: a nearer step follows them
+            ease = 10.0 * max(ease, 1e-4)
+            if ease > 1e8:
+                break
+            continue
+        shapes, position, tries = search(system, point, step, work)
+        if tries:
+            ease = min(ease * 3.0 ** min(tries, 3), 100.0)
+        elif step.limit > 0.5:
+            ease *= 0.3
+        point = Point(shapes, position, mixed, point.iterations, step.residual, step.worst)
+    return point
+
+
+def search(system: Assembly, point: Point, step: Step, work: float) -> tuple[list[Array], Array, int]:
+    """The share of a step beyond which the forces would pull back, and how often it was shortened (S6b)."""
+    share, tries = step.limit, 0
+    while True:
+        shapes, position = system.moved(point.shapes, point.position, step, share)
+        at_end = system.work(system.nodal(shapes), position, step)
+        if at_end >= -OVERSHOOT * work or tries == SHORTENINGS:
+            return shapes, position, tries
+        share *= min(max(work / (work - at_end), 0.1), 0.7)
+        tries += 1
+
+
+def _softer(arrays: LineArrays, most: float) -> LineArrays:
+    """The same line with EA at most `most` [N] and the compression that it carries as it was."""
+    EA = np.minimum(arrays.EA, most)
+    return arrays._replace(
+        EA=EA, limit=arrays.limit * arrays.EA / EA, knee=np.minimum(arrays.knee * arrays.EA / EA, 0.01)
+    )
+
+
+def _transverse(system: Assembly, mixed: Sequence[Array]) -> list[float]:
+    """The transverse stiffness of an element of each line, the natural size of λ [N/m]."""
+    return [
+        max(float(np.mean(np.maximum(tension, 0.0))), 1e-3 * float(np.sum(line.arrays.w_dry)))
+        / float(np.mean(line.arrays.L))
+        for line, tension in zip(system.lines, mixed, strict=True)
     ]
-    weights = [float(np.max(line.arrays.w_dry)) for line in lines]
-    return max([*tensions, *weights, 1.0])
 
 
-def _round_off(lines: Sequence[LineModel], shapes: Sequence[Array]) -> float:
-    """Force that the last bit of a node's position makes in the stiffest element [N]: no residual can be asked below."""
-    largest = 0.0
-    for line, shape in zip(lines, shapes, strict=True):
-        bit = float(np.spacing(np.abs(shape).max()))
-        largest = max(largest, 2.0 * bit * float(np.max(line.arrays.EA / line.arrays.L)))
-    return largest
+def _even_tension(system: Assembly, shapes: Sequence[Array]) -> list[Array]:
+    """One tension along each line to start with [N]: the mean size of those that the first shape has."""
+    means = [float(np.mean(np.abs(tension))) for tension in system.tensions(shapes)]
+    weights = [1e-3 * float(np.sum(line.arrays.w_dry)) for line in system.lines]
+    return [
+        np.full(line.arrays.L.size, max(mean, weight))
+        for line, mean, weight in zip(system.lines, means, weights, strict=True)
+    ]
 
 
-def _residual(lines, steps, body, position, scale):  # type: ignore[no-untyped-def]
-    worst, where = 0.0, "the vessel"
-    for line, (F, *_rest) in zip(lines, steps, strict=True):
-        if F.shape[0] > 2:
-            sizes = np.abs(F[1:-1]).max(axis=1)
-            index = int(np.argmax(sizes))
-            if not sizes[index] <= worst:
-                worst, where = float(sizes[index]), f"line {line.name!r}, {line.node_arc[index + 1]:.4g} m from end a"
-    if body is not None:
-        load = body.load(position)
-        for line, (F, *_rest) in zip(lines, steps, strict=True):
-            load = load + line.multiplicity * vessel_coupling(line, body, position).T @ _end_forces(F)
-        arm = 30.0 * max(sum(line.multiplicity for line in lines), 1)  # moments against a typical lever
-        size = float(max(np.abs(load[:3]).max() / max(arm / 30.0, 1.0), np.abs(load[3:]).max() / arm))
-        if not size <= worst:
-            worst, where = size, "the vessel"
-    return worst / scale, where
+def _weight(line: LineModel) -> float:
+    """Weight in water that a line may carry [N], sizes of segments added up."""
+    arrays = line.arrays
+    own = float(np.sum(np.abs(arrays.w_dry - arrays.b_wet)))
+    return max(own, float(np.sum(np.abs(arrays.point_weight - arrays.point_lift))), 1e-3 * float(np.sum(arrays.w_dry)))
 
 
-def _end_forces(F: Array) -> Array:
-    return np.concatenate([F[-1], F[0]])
+def _linear_tension(line: LineModel, old: Array, new: Array) -> Array:
+    """Tension of the length that is linear in the step, (l + t·Δ - L) EA/L at the old l and t, (N,) [N] (S6a).
 
-
-def vessel_coupling(line: LineModel, body: Body, position: Array) -> Array:
-    """∂(end b, end a)/∂(vessel), (6, 6); zero rows where the end is not a fairlead (S7)."""
-    G = np.zeros((6, 6))
-    for row, end in enumerate(line.ends):
-        if end.kind == "fairlead" and end.arm is not None:
-            G[3 * row : 3 * row + 3] = body.arm_matrix(position, end.arm)
-    return G
-
-
-def _body_step(lines, steps, body, position):  # type: ignore[no-untyped-def]
-    """The vessel's step with all lines condensed onto it (S8)."""
-    if body is None:
-        return np.zeros(6)
-    J, r = body.stiffness(position), body.load(position)
-    for line, (F, _y, _X, Kc, fc) in zip(lines, steps, strict=True):
-        G = vessel_coupling(line, body, position)
-        J = J + line.multiplicity * G.T @ Kc @ G
-        r = r + line.multiplicity * G.T @ fc
-        for row, end in enumerate(line.ends):
-            if end.kind == "fairlead":
-                force = _end_forces(F)[3 * row : 3 * row + 3]
-                J = J + line.multiplicity * body.geometric(position, end.arm, force)
-    size = np.sqrt(np.maximum(np.abs(np.diag(J)), 1e-12 * np.abs(J).max() + 1e-300))
-    if np.linalg.cond(J / np.outer(size, size)) > 1e12:
-        raise NotConverged(
-            "statics", "the vessel is not held: its stiffness with all lines is singular.",
-            "Moor it in every direction, or give hydrostatics.stiffness or line_coefficients.stiffness.",
-        )  # fmt: skip
-    return np.linalg.solve(J, r)
-
-
-def _advance(lines, shapes, steps, body, position, delta):  # type: ignore[no-untyped-def]
-    """Move all nodes by one step, shortened so that no node moves more than an element or 2 % of its line."""
-    moves = []
-    limit = 1.0
-    for line, (_F, y, X, _Kc, _fc) in zip(lines, steps, strict=True):
-        ends = vessel_coupling(line, body, position) @ delta if body is not None else np.zeros(6)
-        move = y - X @ ends
-        moves.append((move, ends))
-        largest = float(np.abs(move).max(initial=0.0))
-        most = max(line.length / line.arrays.L.size, 0.02 * line.length)
-        if largest > most:
-            limit = min(limit, most / largest)
-    if body is not None and np.abs(delta[3:]).max() > 0.2:
-        limit = min(limit, 0.2 / float(np.abs(delta[3:]).max()))
-    delta *= limit
-    moved = body.moved(position, delta) if body is not None else position
-    for line, shape, (move, _ends) in zip(lines, shapes, moves, strict=True):
-        shape[1:-1] += limit * move.reshape(-1, 3)
-        for end, index in ((line.end_b, -1), (line.end_a, 0)):
-            if end.kind == "fairlead" and body is not None:
-                shape[index] = body.fairlead(moved, end.arm)
+    Compression beyond the Euler load is left out.
+    """
+    d = np.diff(old, axis=0)
+    length = np.sqrt(np.sum(d * d, axis=1))
+    length = length + np.sum(d * (np.diff(new, axis=0) - d), axis=1) / length
+    strain = length / line.arrays.L - 1.0
+    return line.arrays.EA * np.maximum(strain, -line.arrays.limit)

@@ -15,12 +15,11 @@ from ..model.line import LineModel, has_current
 from ..model.slack import static_warnings
 from ..vessel.balance import balance_warnings
 from ..vessel.rigid import turned_force
+from .drift import DriftingBody
 from .newton import State, equilibrium
-from .pretension import place, still_water
-from .start import first_shape
+from .pretension import place
 
 Array = np.ndarray
-DRIFT_ROUNDS = 60
 
 
 @dataclass(frozen=True)
@@ -48,32 +47,16 @@ def design_state(model: Model) -> StaticState:
     Raises CaseError when a wanted pretension cannot be had, NotConverged when an iteration fails.
     """
     spec = model.statics
-    lines = tuple(place(model.case, line, model.frame) for line in model.lines)
-    shapes, forces, iterations = [], [], 0
-    for line in lines:
-        shape = first_shape(line, _known(line, 0), _known(line, 1))
-        held = equilibrium(
-            [still_water(line)],
-            State([shape], np.zeros(6)),
-            [np.zeros_like(shape)],
-            None,
-            spec.tolerance,
-            spec.max_iterations,
-        )
-        shapes.append(held.shapes[0])
-        forces.append(held.end_forces[0])
-        iterations = max(iterations, held.iterations)
-    state = State(shapes, np.zeros(6), forces, iterations, 0.0, True)
+    placed = [place(model.case, line, model.frame, spec.tolerance, spec.max_iterations) for line in model.lines]
+    lines = tuple(line for line, _ in placed)
+    shapes, forces = [state.shapes[0] for _, state in placed], [state.end_forces[0] for _, state in placed]
+    tensions = [state.tensions[0] for _, state in placed]
+    iterations = max((state.iterations for _, state in placed), default=0)
+    state = State(shapes, np.zeros(6), forces, iterations, 0.0, True, tensions)
     body = model.vessel.body if model.vessel is not None else None
     if body is not None and model.vessel is not None:
         body = body.with_constant(model.vessel.steady_load + _trim(model, lines, forces, body))
     return StaticState(lines, state, body, np.zeros(6))
-
-
-def _known(line: LineModel, which: int) -> Array:
-    point = (line.end_a, line.end_b)[which].point
-    assert point is not None, "an end left without a position"
-    return np.asarray(point, dtype=float)
 
 
 def _trim(model: Model, lines: Sequence[LineModel], forces: Sequence[Array], body: VesselBody) -> Array:
@@ -110,30 +93,19 @@ def settle(model: Model, start: StaticState, extra: Sequence[Array] | None = Non
 
     extra : loads on the nodes of each line beyond its static forces (N+1, 3) [N]: mean drag less the current's own.
 
-    The mean drift depends on the yaw it causes; it is substituted until the yaw settles within 1e-7 rad.
+    The mean drift depends on the yaw it causes; both are found together.
     """
     spec = model.statics
     loads = list(extra) if extra is not None else [np.zeros((line.nodes, 3)) for line in start.lines]
-    state, drift, iterations = start.state, start.drift, 0
-    for _ in range(DRIFT_ROUNDS):
-        yaw = float(state.position[5])
-        drift = model.mean_drift(yaw)
-        body = None if start.body is None else start.body.with_constant(start.body.constant + drift)
-        if body is None:
-            state = _lines_alone(start.lines, state, loads, spec.tolerance, spec.max_iterations)
-        else:
-            state = equilibrium(start.lines, state, loads, body, spec.tolerance, spec.max_iterations)
-        iterations += state.iterations
-        if abs(float(state.position[5]) - yaw) < 1e-7 or not np.any(drift):
-            break
+    state, drift = start.state, np.zeros(6)
+    if start.body is None:
+        state = _lines_alone(start.lines, state, loads, spec.tolerance, spec.max_iterations)
+    elif not np.any(model.mean_drift(float(state.position[5]))):
+        state = equilibrium(start.lines, state, loads, start.body, spec.tolerance, spec.max_iterations)
     else:
-        from ..outcome import NotConverged
-
-        raise NotConverged(
-            "statics", f"the yaw under mean drift still changes after {DRIFT_ROUNDS} rounds.",
-            "Check the yaw stiffness of the mooring, or set vessel.mean_drift to exclude.",
-        )  # fmt: skip
-    state.iterations = iterations
+        body = DriftingBody(start.body, model.mean_drift)
+        state = equilibrium(start.lines, state, loads, body, spec.tolerance, spec.max_iterations)
+        drift = body.drift(float(state.position[5]))
     return replace(start, state=state, drift=drift, warnings=_warnings(model, start.lines, state))
 
 
@@ -141,12 +113,13 @@ def _lines_alone(
     lines: Sequence[LineModel], state: State, loads: Sequence[Array], tolerance: float, most: int
 ) -> State:
     solved = [
-        equilibrium([line], State([shape], np.zeros(6)), [load], None, tolerance, most)
-        for line, shape, load in zip(lines, state.shapes, loads, strict=True)
+        equilibrium([line], State([shape], np.zeros(6), tensions=[tension]), [load], None, tolerance, most)
+        for line, shape, load, tension in zip(lines, state.shapes, loads, state.tensions, strict=True)
     ]
     return State(
         [one.shapes[0] for one in solved], state.position, [one.end_forces[0] for one in solved],
         max((one.iterations for one in solved), default=0), max((one.residual for one in solved), default=0.0), True,
+        [one.tensions[0] for one in solved],
     )  # fmt: skip
 
 

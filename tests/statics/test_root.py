@@ -104,13 +104,15 @@ def line_of(length, anchor, elements):
 @pytest.mark.parametrize("what", FOUND)
 def test_the_wanted_tension_is_met_as_with_another_root_finder(what, monkeypatch):
     case, line = line_of(*FOUND[what])
-    ours = pretension.place(case, line, 0.0)
-    assert pretension.top_tension(ours) == pytest.approx(1.2e6, rel=1e-8)
+    ours, state = pretension.place(case, line, 0.0, 1e-9, 2000)
+    assert pretension.top_tension(ours, state) == pytest.approx(1.2e6, rel=1e-8)
+    cold = pretension.held(ours, None, 1e-10, 2000)
+    assert pretension.top_tension(ours, cold) == pytest.approx(1.2e6, rel=1e-8)
     monkeypatch.setattr(
         pretension,
         "find_root",
         lambda f, low, high, *_: SimpleNamespace(value=brentq(f, low, high, rtol=1e-10, xtol=1e-6)),
     )
-    theirs = pretension.place(case, line, 0.0)
+    theirs, _ = pretension.place(case, line, 0.0, 1e-9, 2000)
     assert ours.length == pytest.approx(theirs.length, rel=1e-9)
     assert ours.end_a.point == pytest.approx(theirs.end_a.point, rel=1e-8)

@@ -151,7 +151,8 @@ def time_warnings(result: TimeResult) -> list[str]:
 def _strains(result: TimeResult) -> Iterator[str]:
     for line in result.head["lines"]:
         highest = result.elements("highest", line["name"]).max(axis=-1)
-        yield from strain_warnings(line["name"], line["arc_length"], highest, line["allowed"], "in the time domain")
+        allowed = line.get("allowed", np.zeros_like(highest))  # a part that an older version stored has none
+        yield from strain_warnings(line["name"], line["arc_length"], highest, allowed, "in the time domain")
 
 
 def time_summary(result: TimeResult) -> dict[str, Any]:

@@ -28,21 +28,23 @@ class StepTooLong(NotConverged):
     partial: Any = None
 
 
-def first_judged(run: Run) -> int:
-    """Steps watched before ranges are judged: ten waves at the peak of a random sea, one period of harmonic motion."""
+def periods_watched(run: Run) -> tuple[int, int]:
+    """Steps watched before ranges are judged, and in a trial: ten and three waves at a random sea's peak, else one period."""
     h, waves = run.time.h, run.waves
     if waves is not None and not waves.regular:
-        peak = float(waves.omega[int(np.argmax(waves.variances.sum(axis=0)))])
-        return math.ceil(WAVES * 2.0 * math.pi / peak / h)
+        wave = 2.0 * math.pi / float(waves.omega[int(np.argmax(waves.variances.sum(axis=0)))])
+        return math.ceil(WAVES * wave / h), math.ceil(3 * wave / h)
     omega = harmonic_omega(run.model.case)
-    return run.total if omega is None else math.ceil(2.0 * math.pi / omega / h)
+    steps = run.total if omega is None else math.ceil(2.0 * math.pi / omega / h)
+    return steps, steps
 
 
 class Probe:
     """Looks at a block after every stride; keeps where a trial would have to begin."""
 
     def __init__(self, block: Block):
-        self.block, self.least = block, first_judged(block.run)
+        self.block = block
+        self.least, self.tried = periods_watched(block.run)
         self.marks = [block.mark]  # the ends of the last two strides
         self.worst: Finding | None = None
         self.trial: Finding | None = None
@@ -68,10 +70,8 @@ class Probe:
         """Keep the stride of the worst finding: trials begin one stride before it."""
         if self.worst is None or worst.severity > self.worst.severity:
             self.worst, self.start = worst, self.marks[0]
-            began, reached = int(self.start["step"]), self.block.step
-            wave = self.least // WAVES if self.block.run.waves is not None else self.least
-            self.settled = max(int(self.marks[-1]["step"]), began + wave // 2)
-            self.end = max(reached, self.settled + min(3 * wave, self.least))
+            self.settled = max(int(self.marks[-1]["step"]), int(self.start["step"]) + self.tried // 4)
+            self.end = max(self.block.step, self.settled + self.tried)
 
     def _refusal(self, worst: Finding, seen: Seen, between: Callable[[], None]) -> StepTooLong:
         """The refusal: what was found, when, and what would do."""
@@ -80,7 +80,9 @@ class Probe:
         head, remedy = HEADS[worst.what], REMEDIES[worst.what]
         if worst.what != "reach":
             head, remedy = self._tried(head, _softer(self.block.run, worst, seen), between)
-        return StepTooLong("time_domain", f"{head}: {worst.fact(time.h)}, by t = {now:.4g} s.", remedy)
+        return StepTooLong(
+            "time_domain", f"{head}: {worst.fact(time.h)}, by t = {now:.4g} s (0 ends the build-up).", remedy
+        )
 
     def _tried(self, head: str, softer: str, between: Callable[[], None]) -> tuple[str, str]:
         """Head and remedy, from trials with the default tolerance where the case's is looser, then with shorter steps."""

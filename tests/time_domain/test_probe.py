@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import re
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,11 +17,13 @@ from solver.run import merge, run, run_chunk
 from solver.time_domain import block as blocks
 from solver.time_domain import probe
 from solver.time_domain.ensemble import FEWEST_OUTPUTS, march_ensemble
-from solver.time_domain.probe import StepTooLong, first_judged
+from solver.time_domain.probe import StepTooLong, periods_watched
 from solver.time_domain.resolution import Finding
-from tests.systems import example
+from tests.systems import Source, example
 from tests.time_domain.systems import block_of, marched, prepared, timed
+from tests.time_domain.test_ensemble import _box
 from tests.time_domain.test_refusals import _bed, _buoy, _riser
+from worker.execute import conclude
 
 
 def _loose(name: str, h: float, tolerance: float = 1e-3) -> dict[str, Any]:
@@ -92,7 +96,7 @@ def _long(h: float, duration: float = 4000.0) -> dict[str, Any]:
 def test_a_hopeless_step_is_refused_within_a_tenth_of_the_run() -> None:
     """181 % of the range: seen in the second half of the build-up, 4.3 minutes of 70 before its end."""
     failure = _refused(_long(0.2))
-    at = float(re.search(r"by t = (\S+) s\.", str(failure))[1])  # type: ignore[index]
+    at = float(re.search(r"by t = (\S+) s \(0 ends", str(failure))[1])  # type: ignore[index]
     assert -120.0 < at <= 0.0
     assert failure.partial is None
 
@@ -111,7 +115,10 @@ def test_a_random_sea_is_refused_early_by_any_of_its_seeds(threads: int, monkeyp
     monkeypatch.setattr(blocks, "LANES_WANTED", 1)
     with pytest.raises(StepTooLong) as failure:
         marched(_storm(0.5), seeds=(1, 2), threads=threads)
-    at = re.search(r"by t = (\S+) s\. In a trial from t = \S+ to \S+ s a step of (\S+) s would do", str(failure.value))
+    at = re.search(
+        r"by t = (\S+) s \(0 ends the build-up\)\. In a trial from t = \S+ to \S+ s a step of (\S+) s would do",
+        str(failure.value),
+    )
     assert at is not None, str(failure.value)
     assert float(at[1]) < 0.1 * 3240.0
     assert failure.value.partial is None or failure.value.partial[0].seeds in ([1], [2])
@@ -134,7 +141,7 @@ def test_between_the_limit_and_its_double_the_run_goes_to_its_end() -> None:
     """35 % of the range with 0.1 s: refused, with all that was computed."""
     failure = _refused(_riser(10.0, 8.0, 0.1))
     record, timing = failure.partial
-    assert "by t = 32 s." in str(failure)
+    assert "by t = 32 s (0 ends the build-up)." in str(failure)
     assert timing.duration == pytest.approx(32.0)
     assert record.tension.shape[0] == 320
     assert [one.what for one in record.findings] == ["kink"]
@@ -151,6 +158,24 @@ def test_what_the_build_up_alone_does_is_not_refused_at_the_end() -> None:
     assert np.isfinite(block.watch.range).all()
 
 
+def test_a_trial_goes_on_from_where_the_run_was(source: Source) -> None:
+    """A moored box with memory in random seas: the same motion by the same steps; by shorter ones it converges with h²."""
+    block = block_of(_box(step=0.1, build_up=20.0, duration=80.0), source, (1, 2))
+    block.go(240)
+    mark = block.mark
+    trials = {parts: block.finer(mark, parts, float(block.run.spec.tolerance), 280) for parts in (1, 2, 4)}
+    block.go(240)
+    for parts, trial in trials.items():
+        np.testing.assert_array_equal(trial.state.s, mark["state/s"])
+        trial.go(240 * parts)
+        assert np.isfinite(trial.watch.range).all()
+    assert np.abs(block.state.s - mark["state/s"]).max() > 0.05
+    np.testing.assert_array_equal(trials[1].state.s, block.state.s)
+    np.testing.assert_array_equal(trials[1].state.x, block.state.x)
+    gaps = [float(np.abs(trials[parts].state.s - trials[4].state.s).max()) for parts in (1, 2)]
+    assert gaps[0] / gaps[1] == pytest.approx((1 - 1 / 16) / (1 / 4 - 1 / 16), rel=0.2)
+
+
 @pytest.mark.parametrize(("value", "severity"), [(0.3, 1.0), (0.15, 0.5), (0.6, 2.0)])
 def test_severity_is_the_value_over_its_limit(value: float, severity: float) -> None:
     assert Finding("line", "kink", value, 0.0).severity == pytest.approx(severity)
@@ -161,9 +186,11 @@ def test_a_random_sea_is_judged_after_ten_waves_and_a_harmonic_case_after_one_pe
     data = example("hanging-riser-case2")
     data["environment"]["seastates"] = sea
     random = block_of(timed(data, step=0.1, build_up=20.0, duration=900.0, output_step=0.1))
-    assert first_judged(random.run) * 0.1 == pytest.approx(90.0, rel=0.01)
+    assert 0.1 * np.array(periods_watched(random.run)) == pytest.approx([90.0, 27.0], rel=0.01)
     harmonic = block_of(_riser(10.0, 27.0, 0.1))
-    assert first_judged(harmonic.run) == 270
+    assert periods_watched(harmonic.run) == (270, 270)
+    regular = block_of(_buoy(0.1, 2.0))
+    assert periods_watched(regular.run) == (90, 90)
 
 
 def test_a_refused_run_keeps_what_it_computed_apart() -> None:
@@ -228,3 +255,14 @@ def test_a_few_outputs_are_not_kept() -> None:
     data = _riser(10.0, 8.0, 0.1)
     data["analyses"]["time_domain"]["output_step"] = 32.0 / (FEWEST_OUTPUTS - 2)
     assert _refused(data).partial is None
+
+
+def test_the_worker_takes_a_doubtful_time_domain_for_failed() -> None:
+    case, parts = _parts((540, 40), (False, True))
+    job = SimpleNamespace(analyses=("statics", "time_domain"))
+    outcome = conclude(merge(case, parts), job)  # type: ignore[arg-type]
+    assert outcome.state == "failed"
+    assert outcome.outcomes["time_domain"] == "failed"
+    assert outcome.reason is not None
+    assert outcome.reason.startswith("time_domain: the step is too long. What was computed (1 seed, 108 s after")
+    assert "time_domain_doubtful" in json.loads(outcome.summary)

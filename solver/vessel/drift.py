@@ -29,11 +29,13 @@ class Drift:
     kind : `none`; `newman`, half the sum of the diagonal terms; `newman-geometric`, their geometric mean with their
     sign, zero where the signs differ; `qtf`, the full table. Waves of two directions: the table of those headings where
     the data hold it, else half the sum of the terms of each direction. Hermitian: T2(m, n) = T2(n, m)*.
+    far : headings outside the data are the nearest of the data at any distance, for statics (V29).
     """
 
     data: HydrodynamicData | None
     kind: Literal["none", "newman", "newman-geometric", "qtf"]
     yaw: float = 0.0
+    far: bool = False
 
     def __post_init__(self) -> None:
         if self.kind == "none":
@@ -55,12 +57,13 @@ class Drift:
             assert qtf is not None
             heading_m, heading_n = direction_m - self.yaw, direction_n - self.yaw
             if direction_n == direction_m or qtf.knows(heading_m, heading_n):
-                values = qtf.at(omega_m, omega_n, heading_m, heading_n)
+                values = qtf.at(omega_m, omega_n, heading_m, heading_n, self.far)
             else:
-                values = 0.5 * (qtf.at(omega_m, omega_n, heading_m) + qtf.at(omega_m, omega_n, heading_n))
+                each = [qtf.at(omega_m, omega_n, heading, far=self.far) for heading in (heading_m, heading_n)]
+                values = 0.5 * (each[0] + each[1])
             return turned_force(values, self.yaw)
-        first = self.data.mean_drift_at(omega_m, direction_m - self.yaw)
-        second = self.data.mean_drift_at(omega_n, direction_n - self.yaw)
+        first = self.data.mean_drift_at(omega_m, direction_m - self.yaw, self.far)
+        second = self.data.mean_drift_at(omega_n, direction_n - self.yaw, self.far)
         if self.kind == "newman":
             return turned_force(0.5 * (first + second), self.yaw)
         product = first * second

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from ...outcome import DataError
-from .interpolate import check_range, heading_weights
+from .interpolate import NEAR, check_range, heading_weights
 
 Array = np.ndarray
 HERMITIAN = 1e-3  # of the largest force, or moment
@@ -82,11 +83,14 @@ class QTF:
         except DataError:
             return False
 
-    def at(self, omega_m: Array, omega_n: Array, heading: float, heading_n: float | None = None) -> Array:
+    def at(
+        self, omega_m: Array, omega_n: Array, heading: float, heading_n: float | None = None, far: bool = False
+    ) -> Array:
         """T2 at pairs of frequencies, arrays of one shape (...) [rad/s] -> complex (..., 6); bilinear (V23).
 
         Below the lowest frequency it goes linearly to zero at omega = 0, as a long wave scatters nothing (V7).
-        heading_n : that of the wave n when it is another. Raises DataError outside the frequencies or headings of the
+        heading_n : that of the wave n when it is another. far : headings outside the data are the nearest of the data
+        (interpolate.heading_weights); for one heading only. Raises DataError outside the frequencies or headings of the
         data, and where pairs were not computed.
         """
         shape = np.broadcast_shapes(np.shape(omega_m), np.shape(omega_n))
@@ -95,7 +99,7 @@ class QTF:
             check_range(part, 0.0, float(self.omega[-1]), self.name, "the QTF")
         m, n = np.minimum(m, self.omega[-1]), np.minimum(n, self.omega[-1])
         if heading_n is None or abs(heading_n - heading) < 1e-9:
-            i, j, w = heading_weights(self.headings, heading, self.name)
+            i, j, w = heading_weights(self.headings, heading, self.name, math.inf if far else NEAR)
             table = self.values[i] if w == 0.0 else (1.0 - w) * self.values[i] + w * self.values[j]
         else:
             table = np.zeros_like(self.values[0])

@@ -95,7 +95,7 @@ def _qtf(data: HydrodynamicData, quantity: str, i: int | None, _: int | None, he
 
 def _weights(headings: Array, heading: float, name: str) -> tuple[int, int, float]:
     try:
-        return heading_weights(headings, math.radians(heading), name)
+        return heading_weights(headings, math.radians(heading), name, reach=0.0)
     except DataError as error:
         raise _fault("heading", str(error), f"{heading:g}") from None
 

@@ -16,6 +16,7 @@ from ..vessel.data import HydrodynamicData
 from ..vessel.drift import Drift, drift_spectrum, mean_drift_force, mean_drift_regular, psd_factor
 from ..vessel.excitation import excitation
 from ..vessel.fit import difference_to, lowest_wave
+from ..vessel.headings import off_the_headings
 from ..vessel.quality import quality_warnings
 from ..vessel.radiation import Radiation, make_radiation
 from ..vessel.rigid import (
@@ -98,14 +99,20 @@ class VesselModel:
         )
 
     def drift_warnings(self, systems: list[tuple[Any, float]], yaw: float) -> tuple[str, ...]:
-        """What to say of the slow drift of wave systems that travel in several directions, at a static yaw (V24)."""
-        return Drift(self.data, self.drift, yaw).warnings([heading for _, heading in systems])
+        """What to say of the drift of wave systems of several directions, or outside the data, at a static yaw (V24, V29)."""
+        directions = [heading for _, heading in systems]
+        beside = (
+            off_the_headings(self.data, self.drift, directions, yaw)
+            if self.data is not None and abs(yaw) > 1e-4
+            else ()
+        )
+        return (*Drift(self.data, self.drift, yaw).warnings(directions), *beside)
 
     def mean_drift(self, systems: list[tuple[Any, float]], yaw: float) -> Array:
         """Mean drift force of all wave systems at a static yaw, frame axes (6,) [N, N m] (V25)."""
         if not self.has_drift:
             return np.zeros(6)
-        force = Drift(self.data, self.drift, yaw)
+        force = Drift(self.data, self.drift, yaw, far=True)
         waves = [
             (2 * math.pi / sea.period, 0.5 * sea.height * np.exp(1j * sea.phase), heading)
             for sea, heading in systems

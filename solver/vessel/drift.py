@@ -30,11 +30,13 @@ class Drift:
     kind : `none`; `newman`, half the sum of the diagonal terms; `newman-geometric`, their geometric mean with their
     sign, zero where the signs differ; `qtf`, the full table. Waves of two directions: the table of those headings where
     the data hold it, else half the sum of the terms of each direction. Hermitian: T2(m, n) = T2(n, m)*.
+    far : headings outside the data are the nearest of the data at any distance, for statics (V29).
     """
 
     data: HydrodynamicData | None
     kind: Literal["none", "newman", "newman-geometric", "qtf"]
     yaw: float = 0.0
+    far: bool = False
 
     def __post_init__(self) -> None:
         if self.kind == "none":
@@ -52,9 +54,11 @@ class Drift:
         if self.kind == "none" or self.data is None:
             return np.zeros((*omega_m.shape, 6))
         if self.kind == "qtf":
-            return self._of_pairs(lambda qtf, *headings: qtf.at(omega_m, omega_n, *headings), direction_m, direction_n)
-        first = self.data.mean_drift_at(omega_m, direction_m - self.yaw)
-        second = self.data.mean_drift_at(omega_n, direction_n - self.yaw)
+            return self._of_pairs(
+                lambda qtf, *headings: qtf.at(omega_m, omega_n, *headings, far=self.far), direction_m, direction_n
+            )
+        first = self.data.mean_drift_at(omega_m, direction_m - self.yaw, self.far)
+        second = self.data.mean_drift_at(omega_n, direction_n - self.yaw, self.far)
         if self.kind == "newman":
             return turned_force(0.5 * (first + second), self.yaw)
         product = first * second

@@ -17,6 +17,7 @@ from ..waves.spectra import hs_in_band, significant_height
 from .data import HydrodynamicData
 from .data.interpolate import PRINTED
 from .drift import Drift
+from .headings import off_the_headings
 from .quality import quality_warnings
 from .rigid import about_cg
 
@@ -43,7 +44,8 @@ def fit(case: Case, data: HydrodynamicData) -> tuple[str, ...]:
     headings = [float(sea.direction) - float(case.vessel.heading) for sea in case.environment.seastates]
     doubts = (
         *_below_the_data(case, data, low), *_below_the_pairs(case, choice, data, low),
-        *Drift(data, choice.drift).warnings(headings), *_differences(case, choice),
+        *Drift(data, choice.drift).warnings(headings), *off_the_headings(data, choice.drift, headings),
+        *_differences(case, choice),
     )  # fmt: skip
     return (*data.warnings, *quality_warnings(data, low, high), *doubts)
 
@@ -139,6 +141,8 @@ def _pairs(case: Case, choice: Hydrodynamics, data: HydrodynamicData, high: floa
 def _directions(case: Case, choice: Hydrodynamics, data: HydrodynamicData, low: float) -> Iterator[FieldError]:
     """Each wave system against the headings, at the lowest wave and in the middle of the data."""
     assert case.vessel is not None
+    if case.analyses.frequency_domain is None and case.analyses.time_domain is None:
+        return  # statics takes the mean drift of the nearest heading (V29)
     about = about_cg(data, case.vessel)
     middle = 0.5 * float(data.omega[0] + data.omega[-1])
     for index, sea in enumerate(case.environment.seastates):

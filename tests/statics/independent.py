@@ -72,13 +72,7 @@ def nodal_forces(case: Case, frame: float, line: LineModel, x: Array) -> tuple[A
     F[:-1] += wet_a[:, None] * _drag(case, e, V[:-1], t)
     F[1:] += wet_b[:, None] * _drag(case, e, V[1:], t)
     F += _attachments(case, line, e, x, V)
-    a2, bed = line.arrays.seabed[0], -case.environment.depth
-    soil = 100e3 if case.environment.seabed.soil is None else case.environment.seabed.soil
-    if case.environment.seabed.node_stiffness is not None:
-        a1 = np.full(x.shape[0], case.environment.seabed.node_stiffness)
-    else:
-        a1 = soil * 0.5 * (np.append(e["L"] * e["D"], 0.0) + np.append(0.0, e["L"] * e["D"]))
-    F[:, 2] += a1 * np.logaddexp(0.0, -2.0 * a2 * (x[:, 2] - bed)) / (2.0 * a2)
+    F[:, 2] += _bed(case, e, x[:, 2])
     return F, T, float(8.0 * np.spacing(np.abs(x).max()) * (e["EA"] / e["L"]).max())
 
 
@@ -99,6 +93,25 @@ def _elements(case: Case, line: LineModel) -> dict[str, Array]:
     e["weight"] = e["m"] * water.gravity * e["L"]
     e["lift"] = water.density * water.gravity * 0.25 * np.pi * e["D"] ** 2 * e["L"]
     return e
+
+
+def _bed(case: Case, e: dict[str, Array], z: Array) -> Array:
+    """L13, L19, L20: none at the held ends."""
+    shared = lambda values: 0.5 * (np.append(values, 0.0) + np.append(0.0, values))  # noqa: E731
+    seabed = case.environment.seabed
+    area = shared(e["L"] * e["D"])
+    a1 = area * (100e3 if seabed.soil is None else seabed.soil)
+    if seabed.node_stiffness is not None:
+        a1 = np.full(z.size, float(seabed.node_stiffness))
+    resting = np.maximum(shared(e["weight"] - e["lift"]), 0.0) / a1
+    own = np.maximum(resting, 0.5 * area / shared(e["L"]))
+    transition = own if seabed.transition is None else np.full(z.size, float(seabed.transition))
+    with np.errstate(divide="ignore"):
+        lower = np.where(resting > 0, -0.5 * transition * np.log(1.0 - np.exp(-2.0 * resting / transition)), 0.0)
+    height = z + case.environment.depth + lower
+    force = 0.5 * a1 * transition * np.logaddexp(0.0, -2.0 * height / transition)
+    force[[0, -1]] = 0.0
+    return np.asarray(force)
 
 
 def _tension(case: Case, e: dict[str, Array], length: Array) -> Array:

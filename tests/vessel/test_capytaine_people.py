@@ -19,7 +19,7 @@ def without(folder: Path, places: list[int], variables: tuple[str, ...] = COMPUT
     """The synthetic file with NaN at some of its finite frequencies."""
     made = dataset(edges=edges)
     for name in variables:
-        made[name].values[np.array(places) + edges] = np.nan
+        made[name].values[np.array(places, int) + edges] = np.nan
     made = made.drop_vars("mean_drift_force")
     return to_bytes(made, folder)
 

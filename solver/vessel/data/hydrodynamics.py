@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from ...outcome import DataError
-from .interpolate import check_range, heading_weights, linear, spans_circle
+from .interpolate import NEAR, check_range, heading_weights, linear, spans_circle
 from .pchip import pchip
 from .qtf import QTF
 
@@ -151,11 +152,12 @@ class HydrodynamicData:
             np.concatenate([np.zeros((1, 6, 6)), self.damping]),
         )
 
-    def mean_drift_at(self, omega: Array, heading: float) -> Array:
+    def mean_drift_at(self, omega: Array, heading: float, far: bool = False) -> Array:
         """Mean drift force per amplitude squared at omega (any shape (...)) and one heading: (..., 6) (V7).
 
-        Linear over frequency and heading, and to zero at omega = 0 as a long wave scatters nothing. Raises DataError
-        when the file has none, above its frequencies and outside its headings.
+        Linear over frequency and heading, and to zero at omega = 0 as a long wave scatters nothing. far : a heading
+        outside the data is the nearest of the data, at any distance (V29). Raises DataError when the file has none, above
+        its frequencies and outside its headings.
         """
         if self.mean_drift is None:
             raise DataError(
@@ -163,7 +165,7 @@ class HydrodynamicData:
                 f"Newman's approximation needs; add it to the file, or set vessel.hydrodynamics.drift to none"
             )
         omega = np.asarray(omega, dtype=float)
-        i, j, w = heading_weights(self.drift_headings, heading, self.name)
+        i, j, w = heading_weights(self.drift_headings, heading, self.name, math.inf if far else NEAR)
         table = (1.0 - w) * self.mean_drift[:, i] + w * self.mean_drift[:, j]
         check_range(omega.ravel(), 0.0, float(self.drift_omega[-1]), self.name, "the mean drift force")
         nodes = np.concatenate([[0.0], self.drift_omega])

@@ -10,6 +10,7 @@ from ...outcome import DataError
 
 Array = np.ndarray
 TURN = 2.0 * math.pi
+NEAR = math.radians(5.0)  # a heading outside the data is taken as the nearest one within this, with a warning
 PRINTED = 2e-5  # of a frequency: what files of five printed digits may differ by; nearer than this is inside
 
 
@@ -23,15 +24,44 @@ def spans_circle(headings: Array) -> bool:
     return closing <= inner * (1 + 1e-6) and inner <= math.pi / 2 * (1 + 1e-6)
 
 
-def heading_weights(headings: Array, heading: float, name: str) -> tuple[int, int, float]:
+def heading_weights(headings: Array, heading: float, name: str, reach: float = NEAR) -> tuple[int, int, float]:
     """Indices i, j and weight w with value = (1 - w) value[i] + w value[j] at a heading [rad] (V4).
 
-    Raises DataError for a heading outside the data (none is extrapolated).
+    Outside the data the nearest heading stands in, if it is within `reach` [rad], and `outside` says so (V29); none is
+    extrapolated. Raises DataError for a heading farther outside.
     """
-    angle = heading % TURN
-    distance = np.abs((headings - angle + math.pi) % TURN - math.pi)
+    found = _between(headings, heading)
+    if found is not None:
+        return found
+    nearest, distance = _nearest(headings, heading)
+    if distance <= reach:
+        return nearest, nearest, 0.0
+    have = ", ".join(f"{math.degrees(value):.4g}" for value in headings[:40])
+    raise DataError(
+        f"{name}: waves meet the vessel at {math.degrees(heading % TURN):.4g} deg (from its own x axis, direction of travel), "
+        f"but the data hold {have} deg; compute that heading, or headings round the circle at most 90 deg apart"
+    )
+
+
+def outside(headings: Array, heading: float) -> tuple[float, float] | None:
+    """The heading that stands in for one outside the data, and its distance [rad]; None for a heading inside."""
+    if _between(headings, heading) is not None:
+        return None
+    nearest, distance = _nearest(headings, heading)
+    return float(headings[nearest]), distance
+
+
+def _nearest(headings: Array, heading: float) -> tuple[int, float]:
+    distance = np.abs((headings - heading + math.pi) % TURN - math.pi)
     nearest = int(distance.argmin())
-    if distance[nearest] < 1e-6:
+    return nearest, float(distance[nearest])
+
+
+def _between(headings: Array, heading: float) -> tuple[int, int, float] | None:
+    """Indices and weight of a heading that the data hold or enclose, None for another."""
+    angle = heading % TURN
+    nearest, distance = _nearest(headings, angle)
+    if distance < 1e-6:
         return nearest, nearest, 0.0
     upper = int(np.searchsorted(headings, angle))
     if 0 < upper < headings.size:
@@ -41,11 +71,7 @@ def heading_weights(headings: Array, heading: float, name: str) -> tuple[int, in
     elif spans_circle(headings):
         width = TURN - float(headings[-1] - headings[0])
         return headings.size - 1, 0, float((angle - headings[-1]) % TURN) / width
-    have = ", ".join(f"{math.degrees(value):.4g}" for value in headings[:40])
-    raise DataError(
-        f"{name}: waves meet the vessel at {math.degrees(angle):.4g} deg (from its own x axis, direction of travel), "
-        f"but the data hold {have} deg; compute that heading, or headings round the circle at most 90 deg apart"
-    )
+    return None
 
 
 def check_range(omega: Array, low: float, high: float, name: str, what: str) -> None:

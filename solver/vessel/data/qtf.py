@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from ...outcome import DataError
-from .interpolate import PRINTED, check_range, heading_weights
+from .interpolate import NEAR, PRINTED, check_range, heading_weights
 
 Array = np.ndarray
 HERMITIAN = 1e-3  # of the largest force, or moment
@@ -109,11 +110,14 @@ class QTF:
         except DataError:
             return False
 
-    def at(self, omega_m: Array, omega_n: Array, heading: float, heading_n: float | None = None) -> Array:
+    def at(
+        self, omega_m: Array, omega_n: Array, heading: float, heading_n: float | None = None, far: bool = False
+    ) -> Array:
         """T2 at pairs of frequencies, arrays of one shape (...) [rad/s] -> complex (..., 6); bilinear (V23).
 
         Below the lowest frequency it goes linearly to zero at omega = 0, as a long wave scatters nothing (V7).
-        heading_n : that of the wave n when it is another. Raises DataError outside the frequencies or headings of the
+        heading_n : that of the wave n when it is another. far : headings outside the data are the nearest of the data
+        (interpolate.heading_weights); for one heading only. Raises DataError outside the frequencies or headings of the
         data, and where pairs were not computed.
         """
         shape = np.broadcast_shapes(np.shape(omega_m), np.shape(omega_n))
@@ -121,7 +125,7 @@ class QTF:
         for part in (m, n):
             self._check(part)
         m, n = np.minimum(m, self.omega[-1]), np.minimum(n, self.omega[-1])
-        return np.asarray(self._bilinear(self._table(heading, heading_n), m, n).reshape(*shape, 6))
+        return np.asarray(self._bilinear(self._table(heading, heading_n, far), m, n).reshape(*shape, 6))
 
     def nodal(self, heading: float, heading_n: float | None = None) -> Array:
         """T2 at the nodes of `hats`, complex (N+1, N+1, 6); zero for pairs that were not computed (V23)."""
@@ -139,10 +143,10 @@ class QTF:
     def _check(self, omega: Array) -> None:
         check_range(omega, 0.0, float(self.omega[-1]), self.name, "the QTF")
 
-    def _table(self, heading: float, heading_n: float | None) -> Array:
+    def _table(self, heading: float, heading_n: float | None, far: bool = False) -> Array:
         """T2 over the frequencies of the data for the headings of the waves m and n, (N, N, 6)."""
         if heading_n is None or abs(heading_n - heading) < 1e-9:
-            i, j, w = heading_weights(self.headings, heading, self.name)
+            i, j, w = heading_weights(self.headings, heading, self.name, math.inf if far else NEAR)
             return np.asarray(self.values[i] if w == 0.0 else (1.0 - w) * self.values[i] + w * self.values[j])
         table = np.zeros_like(self.values[0])
         for a, b, weight in self._corners(heading, heading_n):

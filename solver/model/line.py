@@ -187,7 +187,7 @@ def discretise(case: Case, name: str, frame: float, found_length: float) -> Line
         knee=_knee(w_dry / L, b_wet / L, min(case.environment.depth, float(L.sum())), c["EA"]),
         kb=kb, EI=c["EI"], D=c["D_wet"], w_dry=w_dry, b_wet=b_wet,
         cdn=0.25 * rho * L * D * c["cn"], cdt=0.25 * rho * L * D * c["ct"], mw=0.5 * rho * volume * L,
-        can=c["can"], cat=c["cat"], **node, **bed,
+        can=c["can"], cat=c["cat"], **node, **bed, depth=-float(case.environment.depth),
         current_z=z, current_v=current,
     )  # fmt: skip
 
@@ -197,7 +197,7 @@ def element_count(segment: Segment, length: float) -> int:
     return segment.elements or math.ceil(length / float(segment.element_length or length) - 1e-9)
 
 
-def _bed_springs(case: Case, length: Array, weight: Array, area: Array) -> dict[str, Array | float]:
+def _bed_springs(case: Case, length: Array, weight: Array, area: Array) -> dict[str, Array]:
     """The springs of the bed under the nodes (L13, L19, L20).
 
     length, weight, area : of a node's share of the line: unstretched length [m], weight in water [N], length times
@@ -215,7 +215,7 @@ def _bed_springs(case: Case, length: Array, weight: Array, area: Array) -> dict[
         transition = np.maximum(resting, 0.5 * area / length)
     a1[[0, -1]] = 0.0
     return {
-        "a1": a1, "a2": 1.0 / transition, "bed": level - _lowered(resting, transition), "depth": level,
+        "a1": a1, "a2": 1.0 / transition, "bed": level - _lowered(resting, transition),
         "contact": np.array([seabed.damping, seabed.friction, seabed.friction_speed]),
     }  # fmt: skip
 

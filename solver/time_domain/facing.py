@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 from ..kernels.arrays import GROUNDED, TENSION_A, TENSION_B, TOUCHDOWN, VERTICAL_A, VERTICAL_B
-from ..kernels.line import LineArrays
 from ..model.line import LineModel
 from ..outcome import CaseError, FieldError
 from ..statics.solve import StaticState
@@ -41,10 +40,8 @@ def facing(static: StaticState) -> tuple[StaticState, tuple[int, ...]]:
 
 
 def _turned(line: LineModel) -> LineModel:
-    arrays = LineArrays(*(
-        values if name in WHOLE else np.ascontiguousarray(values[::-1])
-        for name, values in line.arrays._asdict().items()
-    ))  # fmt: skip
+    parts = {name: values for name, values in line.arrays._asdict().items() if name not in WHOLE}
+    arrays = line.arrays._replace(**{name: np.ascontiguousarray(values[::-1]) for name, values in parts.items()})
     return replace(line, arrays=arrays, end_a=line.end_b, end_b=line.end_a, anchor_at_b=not line.anchor_at_b)
 
 

@@ -19,6 +19,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
 
+import validation_lines as lines
 import validation_runs as runs
 import validation_tables as tables
 from validation_runs import Runner, Study, mode
@@ -26,7 +27,7 @@ from validation_runs import Runner, Study, mode
 
 def page(study: Study) -> str:
     """The whole page."""
-    parts = [_head(study), _riser(study), _fpso(study), _radiation(study), _differences(study)]
+    parts = [_head(study), _riser(study), lines.section(), _fpso(study), _radiation(study), _differences(study)]
     return "\n\n".join(_filled(block) for part in parts for block in part.split("\n\n")) + "\n"
 
 

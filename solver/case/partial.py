@@ -52,6 +52,8 @@ def read_part(kind: type[Kind], data: dict[str, Any]) -> tuple[Kind, list[FieldE
 
 
 def _part(kind: type[Kind], data: dict[str, Any], loc: Loc, faults: list[FieldError]) -> Kind:
+    for rule in _rules(kind, "before"):
+        data = getattr(kind, rule)(data)
     names = {field.alias or name: name for name, field in kind.model_fields.items()}
     strange = [key for key in data if key not in names and key not in kind.model_fields]
     values, lacking = {}, set()
@@ -78,7 +80,7 @@ def _drop(part: Part, names: Iterable[str]) -> None:
 
 def _obeys(part: Part, loc: Loc, faults: list[FieldError]) -> bool:
     """Whether the rules between the fields hold, as far as the fields are known."""
-    for rule in type(part).__pydantic_decorators__.model_validators:
+    for rule in _rules(type(part), "after"):
         try:
             getattr(part, rule)()
         except Unread:
@@ -87,6 +89,11 @@ def _obeys(part: Part, loc: Loc, faults: list[FieldError]) -> bool:
             faults.append(FieldError(loc, str(error)))
             return False
     return True
+
+
+def _rules(kind: type[Part], mode: str) -> list[str]:
+    """Names of the validators of a whole part that run `before` its fields are read, or `after`."""
+    return [name for name, rule in kind.__pydantic_decorators__.model_validators.items() if rule.info.mode == mode]
 
 
 def _own_values(part: Part) -> list[str]:

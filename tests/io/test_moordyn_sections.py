@@ -47,7 +47,10 @@ def test_read_again_every_force_is_the_same(name: str) -> None:
     [line] = again.lines
     one, two = discretise(case, "line 0", 0.0, 0.0), discretise(again, line, 0.0, 0.0)
     for field in one._fields:
-        if field != "seabed":
+        if field not in (
+            "a2",
+            "bed",
+        ):  # the transition of the bed follows the nominal diameter, which a deck does not have
             assert getattr(two, field) == pytest.approx(getattr(one, field), rel=1e-10), field
 
 
@@ -58,7 +61,7 @@ def test_stiffness_and_damping_of_a_node_stay(seabed: dict[str, Any]) -> None:
     assert again is not None
     one, two = discretise(case, "line 0", 0.0, 0.0), discretise(again, *again.lines, 0.0, 0.0)
     assert two.a1[1:-1] == pytest.approx(one.a1[1:-1], rel=1e-10)
-    assert two.seabed[2] == pytest.approx(one.seabed[2], rel=1e-10)
+    assert two.contact[0] == pytest.approx(one.contact[0], rel=1e-10)
 
 
 def test_the_report_says_what_was_scaled() -> None:

@@ -166,7 +166,7 @@ def test_free_decay_with_quadratic_damping_and_finite_fairleads_against_an_ode_s
         r = Rotation.from_rotvec(s[3:]).apply(arm)
         d = anchor - (point + s[:3] + r - arm)
         length = np.linalg.norm(d)
-        pull = arrays.EA[0] * (length / arrays.L[0] - 1) * d / length
+        pull = arrays.EA[0] * max(length / arrays.L[0] - 1, 0.0) * d / length  # slack, it does not push
         pull[2] -= 0.5 * (arrays.w_dry[0] - arrays.b_wet[0])
         line = 2 * np.concatenate([pull, np.cross(r, pull)])
         return np.asarray(line + body.steady - body.K @ s - body.B @ v - body.quadratic * np.abs(v) * v)

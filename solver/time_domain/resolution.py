@@ -10,7 +10,6 @@ import numpy as np
 
 from ..kernels.arrays import Watch
 from ..model.line import LineModel
-from ..outcome import NotConverged
 from .block import Run
 
 Array = np.ndarray
@@ -104,15 +103,6 @@ def suspect(run: Run, watch: Watch) -> bool:
         blows = watch.bed[3] > 0.5 * BLOW_REFUSED * most
     missed = run.water.missed(float(watch.reach.max(initial=0.0))) if run.water is not None else 0.0
     return bool(kinks.any() or blows.any() or missed > REACH_REFUSED)
-
-
-def findings(run: Run, seen: Seen) -> list[Finding]:
-    """What is above a lower limit. Raises NotConverged above an upper one."""
-    out = observed(run, seen)
-    for one in out:
-        if one.severity > 1.0:
-            raise NotConverged("time_domain", f"{HEADS[one.what]}: {one.fact(run.time.h)}.", REMEDIES[one.what])
-    return out
 
 
 SHORTER = "Use a smaller step, a softer seabed with a wider transition, or look for a line that snaps slack there."

@@ -8,6 +8,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
+from ..case.analysis import TimeDomain
 from ..kernels.arrays import Watch
 from ..model.line import LineModel
 from .block import Run
@@ -24,6 +25,14 @@ HEAVY = 2.5  # … times the node's weight in water: more is a blow, less is lyi
 REACH_WARNED, REACH_REFUSED = 1e-3, 1e-2
 MOVES = 0.05  # of the largest range on the line: elements with less are not judged
 STILL = 1e-4  # of the largest tension: a line whose range is less does not move
+
+
+TOLERANCE = float(TimeDomain.model_fields["tolerance"].default)
+
+
+def is_loose(tolerance: float) -> bool:
+    """Whether a tolerance is looser than the default, so that residuals may look like kinks."""
+    return tolerance > TOLERANCE * (1 + 1e-9)
 
 
 class Seen(NamedTuple):
@@ -83,10 +92,13 @@ class Finding:
             f"{100 * KINK_WARNED:g} %, refused above {100 * KINK_REFUSED:g} %)"
         )
 
-    def sentence(self, h: float) -> str:
-        """The fact with what to do about it, for a result that stands."""
+    def sentence(self, h: float, tolerance: float = TOLERANCE) -> str:
+        """The fact with what to do about it, for a result that stands. tolerance : the case's."""
+        first = (
+            f"the default tolerance, {TOLERANCE:g} instead of {tolerance:g}, then with " if is_loose(tolerance) else ""
+        )
         advice = {
-            "kink": "; compare with half the step",
+            "kink": f"; compare with {first}half the step",
             "reach": "; compare with wave_kinematics: mean",
             "blow": "; peaks after such blows vary by several per cent from step to step: compare with half the step, or "
             "use a softer or damped seabed",

@@ -108,7 +108,9 @@ def test_a_motion_beyond_the_series_is_refused_with_the_distance() -> None:
     block.early.reach[:] = block.watch.reach[:] = reach
     probe = Probe(block)
     probe.least = 0
-    said = r"nodes go too far .* a node in waves went .* m .* wrong by up to .* % of their σ .* Use wave_kinematics: mean"
+    said = (
+        r"nodes go too far .* a node in waves went .* m .* wrong by up to .* % of their σ .* Use wave_kinematics: mean"
+    )
     with pytest.raises(StepTooLong, match=said):
         probe.look(lambda: None)
 

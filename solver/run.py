@@ -237,6 +237,7 @@ def _time_chunk(
     omega, random = harmonic_omega(model.case), bool(model.case.environment.random)
     periodic = omega is None and "failures" not in about and whole_period(spec, timing.duration)
     part = time_part(record, timing, lines, low_border(model), omega, random, periodic)
-    part.summary[KEY]["longest_period"] = longest_period(model, static) if random else None
+    longest = longest_period(model, static) if random else None
+    part.summary[KEY] |= {"longest_period": longest, "tolerance": float(spec.tolerance)}
     tell(Progress(1.0, "done"))
     return Part({**about, **part.summary}, (), part.arrays)

@@ -12,7 +12,7 @@ from ..case.quantities import DOF
 from ..kernels.arrays import GROUNDED, TENSION_A, TENSION_B, TOUCHDOWN, VERTICAL_A, VERTICAL_B
 from ..time_domain.block import Timing
 from ..time_domain.ensemble import Record
-from ..time_domain.resolution import worst
+from ..time_domain.resolution import TOLERANCE, worst
 from ..time_domain.statistics import band_variances, first_harmonic, over_seeds, spectrum
 from .channel import Axis
 from .channels import Made, channel
@@ -144,7 +144,8 @@ def merge_time(parts: list[Part]) -> TimeResult | None:
 
 def time_warnings(result: TimeResult) -> list[str]:
     """What speaks against the length of the step and of the record, lines that go slack, and strains, as sentences."""
-    steps = [one.sentence(result.head["h"]) for one in worst(result.head["findings"])]
+    h, tolerance = result.head["h"], result.head.get("tolerance", TOLERANCE)
+    steps = [one.sentence(h, tolerance) for one in worst(result.head["findings"])]
     return [*steps, *time_slack_warnings(result), *sampling_warnings(result), *_strains(result)]
 
 

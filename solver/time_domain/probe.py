@@ -8,18 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from ..case.analysis import TimeDomain
 from ..model.line import harmonic_omega
 from ..outcome import NotConverged
 from .block import Block, Run
-from .resolution import HEADS, MOVES, REMEDIES, Finding, Seen, observed, suspect
+from .resolution import HEADS, MOVES, REMEDIES, TOLERANCE, Finding, Seen, is_loose, observed, suspect
 
 WAVES = 10  # of a random sea before its ranges are judged
 EARLY = 2.0  # times the limit: what is refused before the end (T18)
 FINER = (2, 4, 10, 20)  # parts of the step that are tried
 MANY = (40, 100, 200, 400, 1000)  # parts that are named without a trial
 ENOUGH = 0.5  # of the limits: what a trial must keep
-TOLERANCE = float(TimeDomain.model_fields["tolerance"].default)
 
 
 class StepTooLong(NotConverged):
@@ -88,7 +86,7 @@ class Probe:
         """Head and remedy, from trials with the default tolerance where the case's is looser, then with shorter steps."""
         run = self.block.run
         h, given = run.time.h, float(run.spec.tolerance)
-        loose, tight = given > TOLERANCE * (1 + 1e-9), min(given, TOLERANCE)
+        loose, tight = is_loose(given), min(given, TOLERANCE)
         begin, end = ((step - run.time.build_up) * h for step in (self.settled, self.end))
         trial = f"In a trial from t = {begin:.4g} to {end:.4g} s"
         if loose and self._does(1, tight, between):

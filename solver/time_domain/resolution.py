@@ -8,9 +8,9 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
+from ..case.analysis import TimeDomain
 from ..kernels.arrays import Watch
 from ..model.line import LineModel
-from ..outcome import NotConverged
 from .block import Run
 
 Array = np.ndarray
@@ -25,6 +25,14 @@ HEAVY = 2.5  # … times the node's weight in water: more is a blow, less is lyi
 REACH_WARNED, REACH_REFUSED = 1e-3, 1e-2
 MOVES = 0.05  # of the largest range on the line: elements with less are not judged
 STILL = 1e-4  # of the largest tension: a line whose range is less does not move
+
+
+TOLERANCE = float(TimeDomain.model_fields["tolerance"].default)
+
+
+def is_loose(tolerance: float) -> bool:
+    """Whether a tolerance is looser than the default, so that residuals may look like kinks."""
+    return tolerance > TOLERANCE * (1 + 1e-9)
 
 
 class Seen(NamedTuple):
@@ -90,10 +98,13 @@ class Finding:
             f"{100 * KINK_WARNED:g} %, refused above {100 * KINK_REFUSED:g} %)"
         )
 
-    def sentence(self, h: float) -> str:
-        """The fact with what to do about it, for a result that stands."""
+    def sentence(self, h: float, tolerance: float = TOLERANCE) -> str:
+        """The fact with what to do about it, for a result that stands. tolerance : the case's."""
+        first = (
+            f"the default tolerance, {TOLERANCE:g} instead of {tolerance:g}, then with " if is_loose(tolerance) else ""
+        )
         advice = {
-            "kink": "; compare with half the step",
+            "kink": f"; compare with {first}half the step",
             "snatch": "; compare its peak with half the step",
             "reach": "; compare with wave_kinematics: mean",
             "blow": "; peaks after such blows vary by several per cent from step to step: compare with half the step, or "
@@ -111,15 +122,6 @@ def suspect(run: Run, watch: Watch) -> bool:
         blows = watch.bed[3] > 0.5 * BLOW_REFUSED * most
     missed = run.water.missed(float(watch.reach.max(initial=0.0))) if run.water is not None else 0.0
     return bool(kinks.any() or blows.any() or missed > REACH_REFUSED)
-
-
-def findings(run: Run, seen: Seen) -> list[Finding]:
-    """What is above a lower limit. Raises NotConverged above an upper one."""
-    out = observed(run, seen)
-    for one in out:
-        if one.severity > 1.0:
-            raise NotConverged("time_domain", f"{HEADS[one.what]}: {one.fact(run.time.h)}.", REMEDIES[one.what])
-    return out
 
 
 SHORTER = "Use a smaller step, a softer seabed with a wider transition, or look for a line that snaps slack there."

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from solver.kernels.waves import water_at, water_where
-from solver.outcome import NotConverged
 from solver.time_domain import block as blocks
 from solver.time_domain.block import Block
-from solver.time_domain.resolution import Seen, findings
+from solver.time_domain.probe import Probe, StepTooLong
+from solver.time_domain.resolution import Seen, observed
 from solver.waves.kinematics import velocity
 from tests.systems import span
 from tests.time_domain.systems import block_of, marched, riser, timed
@@ -101,9 +101,18 @@ def test_a_motion_beyond_the_series_is_refused_with_the_distance() -> None:
     N = block.work.length.shape[0]
     none, bed = np.zeros((N, 1, 1)), np.zeros((4, N + 1, 1, 1))
     seen = Seen(none, none, none, bed, np.full((1, 1), reach))
-    with pytest.raises(NotConverged, match=r"line 'line': a node in waves went .* m .* wrong by up to .* % of their σ"):
-        findings(block.run, seen)
-    assert findings(block.run, seen._replace(reach=np.full((1, 1), 10.0))) == []
+    (one,) = observed(block.run, seen)
+    assert (one.what, one.place) == ("reach", reach)
+    assert one.severity > 1.0
+    assert observed(block.run, seen._replace(reach=np.full((1, 1), 10.0))) == []
+    block.early.reach[:] = block.watch.reach[:] = reach
+    probe = Probe(block)
+    probe.least = 0
+    said = (
+        r"nodes go too far .* a node in waves went .* m .* wrong by up to .* % of their σ .* Use wave_kinematics: mean"
+    )
+    with pytest.raises(StepTooLong, match=said):
+        probe.look(lambda: None)
 
 
 @pytest.mark.slow

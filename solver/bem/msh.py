@@ -67,7 +67,7 @@ def _add_node(lines: Lines, tag: int, xyz: Array, nodes: dict[int, int], points:
 
 def _nodes2(lines: Lines, nodes: dict[int, int], points: list[Array]) -> None:
     for _ in range(lines.integers(1, "the number of nodes")[0]):
-        values = lines.floats(4, "number, x, y, z of a node")
+        values = lines.row(4, "number, x, y, z of a node")
         _add_node(lines, int(values[0]), values[1:], nodes, points)
 
 

@@ -39,7 +39,7 @@ def read_pnl(payload: bytes, name: str) -> Panels:
 
 
 def _node(lines: Lines, number: int, count: int) -> Array:
-    values = lines.floats(4, f"number, x, y, z of node {number} of {count}")
+    values = lines.row(4, f"number, x, y, z of node {number} of {count}")
     if values[0] != number:
         raise lines.fault(f"node {values[0]:g} where node {number} of {count} is expected; number them 1, 2, 3 …")
     return values[1:]
@@ -49,7 +49,7 @@ def _panel(lines: Lines, number: int, count: int, nodes: int) -> list[int]:
     what = f"number, number of corners and corners of panel {number} of {count}"
     words = lines.take(what).split()
     values = [int(value) for value in lines.whole(words, what)]
-    if len(values) < 5 or values[0] != number or values[1] not in (3, 4) or len(values) < 2 + values[1]:
+    if len(values) < 5 or values[0] != number or values[1] not in (3, 4) or len(values) != 2 + values[1]:
         raise lines.fault(f"expected {what}, 3 or 4 of them")
     corners = values[2 : 2 + values[1]]
     if not all(1 <= corner <= nodes for corner in corners):

@@ -166,7 +166,7 @@ def _read_nemoh(payload: bytes, name: str) -> Panels:
     symmetric = lines.symmetry(lines.integers(2, "`2 symmetry`")[1])
     points: list[Array] = []
     while True:
-        values = lines.floats(4, "number, x, y, z of a corner, or the line of zeros after the last")
+        values = lines.row(4, "number, x, y, z of a corner, or the line of zeros after the last")
         if values[0] == 0:
             break
         if values[0] != len(points) + 1:
@@ -174,7 +174,8 @@ def _read_nemoh(payload: bytes, name: str) -> Panels:
         points.append(values[1:])
     faces: list[list[int]] = []
     while not lines.done():
-        panel = lines.integers(4, "the four corners of a panel, or the line of zeros after the last")
+        what = "the four corners of a panel, or the line of zeros after the last"
+        panel = lines.whole(lines.take(what).split(), what, 4)
         if not any(panel):
             break
         if not all(1 <= corner <= len(points) for corner in panel):

@@ -61,6 +61,10 @@ class Lines:
         """`count` numbers at the start of the next line."""
         return self.parse(self.take(what).split()[:count], count, what)
 
+    def row(self, count: int, what: str) -> Array:
+        """The next line, which holds `count` numbers and nothing else."""
+        return self.parse(self.take(what).split(), count, what)
+
     def integers(self, count: int, what: str) -> list[int]:
         """`count` whole numbers at the start of the next line."""
         return self.whole(self.take(what).split()[:count], what, count)

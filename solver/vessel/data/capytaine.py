@@ -39,6 +39,7 @@ class _Layout:
     omega: Array
     order: Array  # rising, zero and infinity included
     headings: Array
+    angle: Array  # of all directions of the file, in [0, 2π)
     turn: Array
     radiating: list[int]
     influenced: list[int]
@@ -134,9 +135,9 @@ def _layout(dataset: Dataset, name: str) -> _Layout:
     omega = numbers(dataset, "omega", name)
     if np.any(np.isnan(omega)) or np.any(omega < 0) or np.unique(omega).size != omega.size:
         raise DataError(f"{name}: omega must hold distinct frequencies from 0 up, in rad/s; check the test matrix")
-    headings, turn = _headings(dataset, name)
+    headings, angle, turn = _headings(dataset, name)
     layout = _Layout(
-        name, dataset["omega"].dims[0], omega, np.argsort(omega), headings, turn,
+        name, dataset["omega"].dims[0], omega, np.argsort(omega), headings, angle, turn,
         dof_order(dataset, "radiating_dof", name), dof_order(dataset, "influenced_dof", name),
     )  # fmt: skip
     if layout.finite.size == 0:
@@ -183,8 +184,8 @@ def _listed(omega: Array) -> str:
     return f"{', '.join(f'{value:.4g}' for value in omega[:8])}{', …' if omega.size > 8 else ''} rad/s"
 
 
-def _headings(dataset: Dataset, name: str) -> tuple[Array, Array]:
-    """Headings in [0, 2π), rising, and their positions in the file."""
+def _headings(dataset: Dataset, name: str) -> tuple[Array, Array, Array]:
+    """Headings in [0, 2π), rising; all angles in file order; and the positions of the headings in the file."""
     beta = numbers(dataset, "wave_direction", name)
     if beta.size == 0 or beta.size > MAX_HEADINGS or not np.all(np.isfinite(beta)):
         raise DataError(f"{name}: wave_direction holds {beta.size} values; expected 1 to {MAX_HEADINGS} finite ones")
@@ -196,7 +197,7 @@ def _headings(dataset: Dataset, name: str) -> tuple[Array, Array]:
     angle = np.where(TURN - angle < 1e-9, 0.0, angle)
     order = np.argsort(angle, kind="stable")
     keep = order[np.concatenate([[True], np.diff(angle[order]) > 1e-9])]
-    return angle[keep], keep
+    return angle[keep], angle, keep
 
 
 def _radiation(dataset: Dataset, variable: str, layout: _Layout) -> tuple[Array, Array | None, Array | None]:
@@ -229,10 +230,25 @@ def _excitation(dataset: Dataset, layout: _Layout) -> tuple[Array, Array | None]
         total = require(dataset, variable, dims, name, remedy)
     if not np.iscomplexobj(total):
         raise DataError(f"{name}: {variable} has no imaginary part; export it with capytaine.export_dataset")
+    _twins_agree(total, layout)
     total = np.conj(total[:, layout.turn][:, :, layout.influenced])
     zero = layout.at(0.0)
     limit = None if zero is None or not np.all(np.isfinite(total[zero])) else total[zero].real
     return _finite(total[layout.finite], variable, name, layout.omega[layout.finite]), limit
+
+
+def _twins_agree(force: Array, layout: _Layout) -> None:
+    """Raises DataError where one direction is there twice, as -180 and 180 deg, with different forces (W, H, 6)."""
+    left_out = np.setdiff1d(np.arange(force.shape[1]), layout.turn)
+    size = np.nan_to_num(np.abs(force)).max(axis=(0, 1))
+    for other in left_out:
+        twin = layout.turn[np.abs((layout.angle[layout.turn] - layout.angle[other] + np.pi) % TURN - np.pi).argmin()]
+        gap = np.nan_to_num(np.abs(force[:, other] - force[:, twin])).max(axis=0)
+        if np.any(gap > 1e-3 * size):
+            raise DataError(
+                f"{layout.name}: wave_direction holds {np.degrees(layout.angle[other]):.5g} deg twice, with different forces; "
+                f"give each direction once"
+            )
 
 
 def _mean_drift(dataset: Dataset, layout: _Layout) -> Array | None:

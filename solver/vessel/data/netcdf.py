@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from itertools import islice
+from itertools import islice, pairwise, product
 from math import prod
 from typing import Any
 
@@ -17,6 +17,7 @@ import numpy as np
 
 from ...case.quantities import DOF
 from ...outcome import DataError
+from .container import Damaged, check_heaps, check_netcdf3
 
 Array = np.ndarray
 MAX_EXPANDED = 256 * 2**20  # bytes: a small compressed file cannot fill the memory
@@ -48,7 +49,9 @@ def open_netcdf(payload: bytes, name: str, wanted: Collection[str]) -> Dataset:
     An attribute of the file that is wanted stands there as a variable of one text.
     """
     try:
-        return (_read_netcdf3 if payload[:3] == b"CDF" else _read_netcdf4)(payload, name, wanted)
+        classic = payload[:3] == b"CDF"
+        (check_netcdf3 if classic else check_heaps)(payload)
+        return (_read_netcdf3 if classic else _read_netcdf4)(payload, name, wanted)
     except DataError:
         raise
     except ImportError:
@@ -79,8 +82,40 @@ def _read_netcdf4(payload: bytes, name: str, wanted: Collection[str]) -> Dataset
             if not _text(item.attrs.get("NAME", "")).startswith(_BARE):
                 found[variable] = item
         _check_size(sum(_expanded(item) for item in found.values()), name)
+        _check_storage(found)
         told = _told({key: file.attrs[key] for key in wanted if key in file.attrs})
         return told | {variable: _variable4(item, variable) for variable, item in found.items()}
+
+
+def _check_storage(found: Mapping[str, Any]) -> None:
+    """Numbers in the usual types and one byte order, and their bytes apart from one another. Raises Damaged.
+
+    HDF5's oldest layouts have no checksums: one byte of a header gives another exponent, byte order or place.
+    """
+    from h5py import h5t
+
+    kinds = [
+        *(f"IEEE_F{size}" for size in (16, 32, 64)),
+        *(f"STD_{sign}{size}" for sign in "IU" for size in (8, 16, 32, 64)),
+    ]
+    usual = [getattr(h5t, kind + order) for kind, order in product(kinds, ("LE", "BE"))]
+    orders, places = set(), []
+    for variable, item in found.items():
+        kind = item.id.get_type()
+        if isinstance(kind, h5t.TypeFloatID | h5t.TypeIntegerID):
+            if not any(kind.equal(other) for other in usual):
+                raise Damaged(f"the numbers of {variable} are of an unusual type")
+            if kind.get_size() > 1:
+                orders.add(kind.get_order())
+        offset = item.id.get_offset()
+        if offset is not None and item.id.get_storage_size():
+            places.append((offset, offset + item.id.get_storage_size(), variable))
+    if len(orders) > 1:
+        raise Damaged("the numbers are in two byte orders")
+    places.sort()
+    for (_, end, one), (begin, _, other) in pairwise(places):
+        if begin < end:
+            raise Damaged(f"{one} and {other} lie over one another")
 
 
 def _expanded(item: Any) -> int:

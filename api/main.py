@@ -13,6 +13,7 @@ from starlette_compress import CompressMiddleware
 from store import isolation
 from store.database import Database
 from store.doorbell import Doorbell
+from store.health import Health
 from store.reconcile import Reconciler
 from store.settings import Settings
 
@@ -23,7 +24,7 @@ from .context import Context
 from .doorkeeper import Doorkeeper
 from .etag import ETags
 from .guard import COOKIE, Guard
-from .metrics import Meter, Metrics
+from .metrics import Meter, Metrics, ServiceState
 from .rates import Rates
 from .routes import (
     auth,
@@ -69,7 +70,9 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
     answer on one port, one does so."""
     settings = settings or Settings.from_env()
     context = Context(settings, Database(settings.database), Doorbell(settings))
+    checks = Health(settings, context.database)
     metrics = Metrics(context.database, count_runs=reconcile)
+    metrics.registry.register(ServiceState(checks, context.doorbell))
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
@@ -81,6 +84,7 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
             yield
         if reconciler:
             reconciler.stop()
+        checks.close()
         context.doorbell.close()
         context.database.close()
 
@@ -95,6 +99,7 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
         lifespan=lifespan,
     )
     app.state.context = context
+    app.state.health = checks
     app.state.attempts = Attempts(settings)
     errors.install(app)
     app.state.metrics = metrics

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from datetime import timedelta
 
 from prometheus_client import CollectorRegistry, Histogram, ProcessCollector, generate_latest
-from prometheus_client.core import GaugeMetricFamily, Metric
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
 from prometheus_client.multiprocess import MultiProcessCollector
 from prometheus_client.registry import Collector
 from sqlalchemy.exc import SQLAlchemyError
@@ -22,6 +22,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from store.clock import utc_now
 from store.database import Database
+from store.doorbell import Doorbell
+from store.health import DEGRADED, OK, Health
 from store.models import STATES
 from store.priority import name_of
 from store.repositories import QueueRepository
@@ -136,6 +138,29 @@ class _Rows(Collector):
             runs.add_metric([state], states.get(state, 0))
         yield runs
         yield GaugeMetricFamily("slowdrift_workers_busy", "Worker processes with a task in hand", len(workers))
+
+
+class ServiceState(Collector):
+    """Gauges of this process: what its health checks said last, and its dispatcher."""
+
+    def __init__(self, health: Health, doorbell: Doorbell):
+        self._health, self._doorbell = health, doorbell
+
+    def describe(self) -> list[Metric]:
+        return []
+
+    def collect(self) -> Iterator[Metric]:
+        self._health.start()
+        states = GaugeMetricFamily("slowdrift_check", "1 ok, 0.5 degraded, 0 not ready", labels=["part"])
+        for check in self._health.checks:
+            states.add_metric([check.name], {OK: 1.0, DEGRADED: 0.5}.get(check.answer()[0], 0.0))
+        yield states
+        bell = self._doorbell
+        up = 0.0 if bell.last_error else 1.0
+        yield GaugeMetricFamily("slowdrift_dispatcher_up", "1 when the broker took the last message", up)
+        yield GaugeMetricFamily("slowdrift_dispatcher_waiting", "Messages that wait to be sent", bell.waiting)
+        yield CounterMetricFamily("slowdrift_dispatcher_sent", "Messages that the broker took", bell.sent)
+        yield CounterMetricFamily("slowdrift_dispatcher_failed", "Messages that it did not take", bell.failed)
 
 
 class Meter:

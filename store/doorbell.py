@@ -29,6 +29,8 @@ class Doorbell:
     def __init__(self, settings: Settings):
         self.settings = settings
         self.last_error: str | None = None
+        self.sent = self.failed = 0
+        """Messages that the broker took, and did not take, since the start."""
         self._app = Celery("slowdrift-sender", set_as_current=False)
         config = celery_config(settings)
         self._app.conf.update(config | {"broker_transport_options": config["broker_transport_options"] | AT_ONCE})
@@ -53,6 +55,11 @@ class Doorbell:
         except Exception as error:
             return f"{type(error).__name__}: {error}"[:300]
         return None
+
+    @property
+    def waiting(self) -> int:
+        """Messages that are still to be sent."""
+        return self._waiting.qsize()
 
     def close(self) -> None:
         """Send what still waits, for a moment, then stop."""
@@ -79,6 +86,8 @@ class Doorbell:
                     name, args=(key,), queue=queue_name(self.settings, to), retry=False, ignore_result=True
                 )
                 self.last_error = None
+                self.sent += 1
             except Exception as error:  # whatever a transport raises: the row is the truth
                 self.last_error = f"{type(error).__name__}: {error}"[:300]
+                self.failed += 1
                 log.warning("The broker did not take the message for %s (%s); it will be sent again.", key, error)

@@ -277,3 +277,11 @@ class Preview(Base):
     state: Mapped[str] = mapped_column(String(20), default=QUEUED)
     answer: Mapped[str | None] = mapped_column(Text, default=None)
     asked_at: Mapped[float] = mapped_column(Seconds)
+
+
+class Probe(Base):
+    """What a health check wrote last (store/health.py)."""
+
+    __tablename__ = "probes"
+    name: Mapped[str] = mapped_column(String(100), primary_key=True)
+    written_at: Mapped[float] = mapped_column(Seconds)

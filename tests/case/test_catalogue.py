@@ -145,7 +145,8 @@ def test_the_stored_case_keeps_what_was_typed_apart_from_what_was_taken() -> Non
     written = json.loads(case.canonical())["line_types"]["wire"]
     record = written.pop("catalogue_values")
     assert written == {
-        "catalogue": "chain-R4-studless", "diameter": 0.12, "EI": 0.0, "compression": "none", "drag": {"normal": 2.0}, "added_mass": {},
+        "catalogue": "chain-R4-studless", "diameter": 0.12,
+        "EI": 0.0, "compression": "none", "drag": {"normal": 2.0}, "added_mass": {},
     }  # fmt: skip
     assert (record["mass"], record["drag"]) == (pytest.approx(286.56), {"tangential": 1.15})
     for text in (case.canonical(), to_yaml(case)):

@@ -89,16 +89,16 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=RESULTS / "statics-sweep.csv")
     options = parser.parse_args()
     warm_up()
-    rows = []
-    for index in range(options.count):
-        rows.append(measure(index, options.seed))
-        if rows[-1]["outcome"] != "equilibrium":
-            print(rows[-1], flush=True)
     options.out.parent.mkdir(exist_ok=True)
-    with options.out.open("w", newline="") as file:
+    rows = []
+    with options.out.open("w", newline="", buffering=1) as file:
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
-        writer.writerows(rows)
+        for index in range(options.count):
+            rows.append(measure(index, options.seed))
+            writer.writerow(rows[-1])
+            if rows[-1]["outcome"] != "equilibrium":
+                print(rows[-1], flush=True)
     print(table(rows))
 
 

@@ -83,7 +83,7 @@ def end_block(K):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def stiffen_across(line, x, mixed, K):  # type: ignore[no-untyped-def]
-    """Replace the tension in the transverse stiffness of every element by `mixed` (N,) [N] (S6a)."""
+    """Replace the tension in the transverse stiffness of every element by `mixed` (N,) [N] (S13)."""
     own = axial.tension(line, x)
     for j in range(line.L.size):
         d = x[j + 1] - x[j]
@@ -105,7 +105,7 @@ def stiffen_across(line, x, mixed, K):  # type: ignore[no-untyped-def]
 def newton_step(line, x, load, lam, mixed):  # type: ignore[no-untyped-def]
     """One linearisation of a line in static equilibrium under its forces and a constant nodal `load` (N+1, 3) (S6).
 
-    lam : λ added to the diagonal [N/m]; mixed : tension that stiffens the elements across (N,) [N] (S6a).
+    lam : λ added to the diagonal [N/m]; mixed : tension that stiffens the elements across (N,) [N] (S13).
     Returns (F, y, X, Kc, fc): nodal forces; interior step with ends held, (3(N-1),); interior displacement per unit end
     displacement, (3(N-1), 6), to be subtracted; condensed end stiffness (6, 6); end forces after the step y, (6,).
     """

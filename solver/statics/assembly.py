@@ -246,7 +246,7 @@ class Assembly:
         return out, place
 
     def work(self, nodal: Sequence[Array], position: Array, step: Step) -> float:
-        """Work that the residual forces do along a step [N m] (S6b)."""
+        """Work that the residual forces do along a step [N m] (S14)."""
         total = float(self.body_load(nodal, position) @ step.delta)
         for line, force, move in zip(self.lines, nodal, step.moves, strict=True):
             total += line.multiplicity * float(np.sum(force[1:-1] * move))

@@ -1,6 +1,6 @@
 """Static equilibrium: Newton's iteration with the tension as a second unknown; where it stalls, soft lines first.
 
-Equations S5-S6d of docs/theory.md; why this way: docs/decisions/0054-statics-globalisation.md.
+Equations (S5), (S6) and (S13)-(S15); why this way: docs/decisions/0054-statics-globalisation.md.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def equilibrium(
     loads : constant nodal loads of each line beyond its own forces, (N+1, 3) [N].
     tolerance : largest residual force as a share of the largest element tension; never asked below round-off.
 
-    Newton's iteration first; where it does not settle, a line search on soft lines, then Newton's again (S6c).
+    Newton's iteration first; where it does not settle, a line search on soft lines, then Newton's again (S15).
     Raises NotConverged with what is largest and where.
     """
     system = Assembly(lines, loads, body)
@@ -84,7 +84,7 @@ def equilibrium(
 def newton(
     system: Assembly, start: Point, tolerance: float, most: int, damping: float, tell: Callable[[int, float], None]
 ) -> tuple[State | None, Point]:
-    """Newton's iteration in positions and tensions (S6, S6a); the state where it converged, else None."""
+    """Newton's iteration in positions and tensions (S6, S13); the state where it converged, else None."""
     point, previous, seen = start, np.inf, []
     for _ in range(most):
         lam = [max(damping, 1e-9) * stiff for stiff in _transverse(system, point.mixed)]
@@ -118,7 +118,7 @@ def _stalled(seen: Sequence[float]) -> bool:
 
 
 def relax(system: Assembly, start: Point, stretch: float, most: int, tell: Callable[[int, float], None]) -> Point:
-    """Towards the equilibrium of softer lines, each step searched along its length (S6b, S6c).
+    """Towards the equilibrium of softer lines, each step searched along its length (S14, S15).
 
     stretch : strain that the weight of a line may give it; 0 leaves the lines as they are.
     """
@@ -152,7 +152,7 @@ def relax(system: Assembly, start: Point, stretch: float, most: int, tell: Calla
 
 
 def search(system: Assembly, point: Point, step: Step, work: float) -> tuple[list[Array], Array, int]:
-    """The share of a step beyond which the forces would pull back, and how often it was shortened (S6b)."""
+    """The share of a step beyond which the forces would pull back, and how often it was shortened (S14)."""
     share, tries = step.limit, 0
     while True:
         shapes, position = system.moved(point.shapes, point.position, step, share)
@@ -198,7 +198,7 @@ def _weight(line: LineModel) -> float:
 
 
 def _linear_tension(line: LineModel, old: Array, new: Array) -> Array:
-    """Tension of the length that is linear in the step, (l + t·Δ - L) EA/L at the old l and t, (N,) [N] (S6a).
+    """Tension of the length that is linear in the step, (l + t·Δ - L) EA/L at the old l and t, (N,) [N] (S13).
 
     Compression beyond the Euler load is left out.
     """

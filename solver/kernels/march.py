@@ -8,7 +8,7 @@ from numba import njit
 from .arrays import FAILED, OK, SHARP
 from .lanes import elements, sharp
 from .record import forces_now, watch_ends, write
-from .step import KEPT, OFTEN, RENEWED, advance
+from .step import KEPT, OFTEN, RENEWED, TAUT, advance
 from .vessel import remember
 from .watch import watch_step
 
@@ -57,17 +57,22 @@ def march(setup, state, work, spare, first, count, h, every, out, watch, counts)
 
 @njit(cache=True)
 def _retry(setup, state, work, spare, time, h, since, seed):  # type: ignore[no-untyped-def]
-    """The step of one seed with a new matrix, then in 2, 4, … 2^MOST_HALVINGS parts; in how many, 0 where it cannot be done."""
+    """The step of one seed with a new matrix, then in 2, 4, … 2^MOST_HALVINGS parts; in how many, 0 where it cannot be done.
+
+    Each with the tangent first, then with the matrix of a line that is taut everywhere: where elements turn slack and taut,
+    the tangent of the one overshoots the other, and a matrix stiffer than both settles.
+    """
     done = np.ones(spare.ds.shape[0], dtype=np.int64)
     x, v, a, da = state.x.copy(), state.v.copy(), state.a.copy(), state.da.copy()
     s, sv, sa, sda = state.s.copy(), state.sv.copy(), state.sa.copy(), state.sda.copy()
-    for halving in range(MOST_HALVINGS + 1):
-        parts = 2**halving
+    for attempt in range(2 * (MOST_HALVINGS + 1)):
+        parts = 2 ** (attempt // 2)
         small = h / parts
         for part in range(parts):
             done[:] = 1
             done[seed] = 0
-            advance(setup, state, spare, time + part * small, small, since + part * small, done, OFTEN)
+            matrix = OFTEN if attempt % 2 == 0 else TAUT
+            advance(setup, state, spare, time + part * small, small, since + part * small, done, matrix)
             if done[seed] != 1:
                 break
         if done[seed] == 1:

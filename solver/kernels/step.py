@@ -12,7 +12,8 @@ from .tangent import tangent
 from .vessel import line_loads, lu_solve, vessel_matrix, vessel_residual
 from .waves import ramp, water_at, water_where
 
-KEPT, RENEWED, OFTEN = 0, 1, 2  # Newton's matrix in a step: as it was, new at the start, new every RENEWAL iterations
+# Newton's matrix in a step: as it was, new at the start, new every RENEWAL iterations, the same with all elements taut
+KEPT, RENEWED, OFTEN, TAUT = 0, 1, 2, 3
 FEW = 8  # iterations with a matrix that is not renewed during the step
 RENEWAL = 4
 
@@ -21,7 +22,7 @@ RENEWAL = 4
 def advance(setup, state, work, time, h, since, done, matrix):  # type: ignore[no-untyped-def]
     """One step of length h of every seed with done = 0; sets done to 1 where it converged, 2 where it did not (T1-T3).
 
-    since : time since the last sample of the memory; matrix : KEPT, RENEWED or OFTEN. The state of a seed moves only when
+    since : time since the last sample of the memory; matrix : KEPT, RENEWED, OFTEN or TAUT. The state of a seed moves only when
     its step converged. Returns iterations used.
     """
     table, tau = setup.table, setup.table[0] * h
@@ -34,7 +35,7 @@ def advance(setup, state, work, time, h, since, done, matrix):  # type: ignore[n
     load = ramp(time + tau, setup.build_up)[0]
     water_at(setup.sea, time + tau, load, work.terms)
     most, used = int(setup.limits[2]), 0
-    for iteration in range(most if matrix == OFTEN else min(FEW, most)):
+    for iteration in range(most if matrix >= OFTEN else min(FEW, most)):
         used = iteration + 1
         _kinematics(state, work, table, tau)
         write_prescribed(setup.lines, setup.base, time + tau, setup.build_up, work.xt, work.vt, work.at, ends)
@@ -42,8 +43,8 @@ def advance(setup, state, work, time, h, since, done, matrix):  # type: ignore[n
             write_fairleads(setup.lines, setup.body, work.st, work.svt, work.sat, work.xt, work.vt, work.at)
         water_where(setup.sea, work, work.xt, time + tau, load)
         residual(setup.lines, work, work.xt, work.vt, work.at, work.res)
-        if (iteration == 0 and matrix != KEPT) or (matrix == OFTEN and iteration % RENEWAL == 0):
-            _renew(setup.lines, setup.body, work, table, tau)
+        if (iteration == 0 and matrix != KEPT) or (matrix >= OFTEN and iteration % RENEWAL == 0):
+            _renew(setup.lines, setup.body, work, table, tau, 1.0 if matrix == TAUT else 0.0)
         _solve(setup, state, work, time + tau, since + tau, load, going)
         if _judge(setup, work, done, going) == 0:
             break
@@ -103,12 +104,12 @@ def _kinematics(state, work, table, tau):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _renew(lines, body, work, table, tau):  # type: ignore[no-untyped-def]
+def _renew(lines, body, work, table, tau, least):  # type: ignore[no-untyped-def]
     """Newton's matrix at the present guess: lines factored down to end b, then the vessel's 6×6 factored (T2)."""
     m, d = table[4] / (tau * tau), table[1] / tau
     tangent(
         work.xt, work.vt, lines.C, lines.D, work.t, work.length, lines.friction, work.wet, work.water, lines.first_wave,
-        lines.current, m, d, work.A,
+        lines.current, m, d, least, work.A,
     )  # fmt: skip
     P, Q = work.xt.shape[0], work.xt.shape[2]
     for i in range(P - 1):

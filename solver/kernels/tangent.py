@@ -36,10 +36,11 @@ from .lanes import (
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
-def tangent(x, v, C, D, t, length, friction, wet, water, first_wave, current, mass_factor, damping_factor, A):  # type: ignore[no-untyped-def]
+def tangent(x, v, C, D, t, length, friction, wet, water, first_wave, current, mass_factor, damping_factor, least, A):  # type: ignore[no-untyped-def]
     """Lower band of K + mass_factor M + damping_factor B into A (3P, BAND, Q), overwritten: A[i, i - j] (L2, L5, L9, L11, L18).
 
     Symmetric and positive: the negative stiffness of slack elements and what drag owes to turning are left out.
+    least : least share of EA/L along an element: 0, or 1 for a matrix that is stiffer than any tangent of (L17).
     """
     P, _, Q = x.shape
     A[:] = 0.0
@@ -48,7 +49,7 @@ def tangent(x, v, C, D, t, length, friction, wet, water, first_wave, current, ma
         for q in range(Q):
             strain = length[j, q] / C[j, EL, q] - 1.0
             free, share = released(strain, C[j, LIMIT, q], C[j, KNEE, q])
-            along = share * C[j, EA, q] / C[j, EL, q]
+            along = max(share, least) * C[j, EA, q] / C[j, EL, q]
             across = max(C[j, EA, q] * (strain + free) / length[j, q], 0.0)
             rest = along - across
             t0, t1, t2 = t[j, 0, q], t[j, 1, q], t[j, 2, q]

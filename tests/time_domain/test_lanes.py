@@ -90,7 +90,7 @@ class Moving:
         lanes.elements(self.x, self.lines.C, self.work.t, self.work.length)
         tangent(
             self.x, self.v, self.lines.C, self.lines.D, self.work.t, self.work.length, self.lines.friction, self.work.wet,
-            self.work.water, 0, self.lines.current, mass, damping, A,
+            self.work.water, 0, self.lines.current, mass, damping, 0.0, A,
         )  # fmt: skip
         return A
 

@@ -91,7 +91,7 @@ def first_of_the_turn(
     the same `keys`, the mode last, and direction, in whatever order they are. Raises DataError where their `values` differ.
     """
     printed = table.values[:, angles]
-    keep = first_listed(column.ravel(), printed.ravel()).reshape(printed.shape).all(axis=1)
+    keep = np.asarray(first_listed(column.ravel(), printed.ravel()).reshape(printed.shape).all(axis=1))
     if keep.all():
         return keep
     cells = np.column_stack([table.values[:, keys], column.reshape(printed.shape)])

@@ -1,4 +1,4 @@
-"""Reads every deck, data set and mesh in a folder and says what came of it, as a table: `python benchmarks/public_files.py FOLDER`.
+"""Reads every deck, data set and mesh in a folder and prints a table: `python benchmarks/public_files.py FOLDER`.
 
 docs/public-files.md has the table of a run over public repositories. Nothing of what is read is kept.
 """

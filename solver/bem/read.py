@@ -87,8 +87,8 @@ def _kind(payload: bytes, name: str) -> tuple[str, Callable[[bytes, str], Panels
     if name.lower().endswith(".gdf") or _looks_like_gdf(head):
         return "GDF", _read_gdf
     foreign = next((what for begin, what in _FOREIGN if re.match(begin, head.lower())), None)
-    said = f", and looks like {foreign}" if foreign else ""
-    raise DataError(f"{name}: this is not a mesh of a known kind{said}; give a mesh as {KINDS}")
+    looks = f", and looks like {foreign}" if foreign else ""
+    raise DataError(f"{name}: this is not a mesh of a known kind{looks}; give a mesh as {KINDS}")
 
 
 def _looks_like_gdf(head: bytes) -> bool:

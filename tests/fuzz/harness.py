@@ -32,18 +32,15 @@ class Tally:
             self.bad[number] = said
 
 
-def fuzz(reader: str, seed: int, count: int, command: tuple[str, ...] = ("tests.fuzz.child",)) -> Tally:
-    """Outcomes of the mutants 0 … count - 1 of a reader.
-
-    command : module of the child, and arguments before reader, seed, first and end.
-    """
+def fuzz(reader: str, seed: int, count: int, module: str = "tests.fuzz.child", limit: float = CPU_LIMIT) -> Tally:
+    """Outcomes of the mutants 0 … count - 1 of a reader. module : of the child; limit : processor time of a mutant [s]."""
     tally, first = Tally(), 0
     while first < count:
-        first = _one_child(tally, [sys.executable, "-m", *command, reader, str(seed)], first, count)
+        first = _one_child(tally, [sys.executable, "-m", module, reader, str(seed)], first, count, limit)
     return tally
 
 
-def _one_child(tally: Tally, command: list[str], first: int, count: int) -> int:
+def _one_child(tally: Tally, command: list[str], first: int, count: int, limit: float) -> int:
     """Run one child as far as it gets; the number of the mutant to go on from."""
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     with subprocess.Popen(
@@ -62,7 +59,7 @@ def _one_child(tally: Tally, command: list[str], first: int, count: int) -> int:
         ]
         for thread in readers:
             thread.start()
-        at, hung = _follow(child, lines, tally, readers[0])
+        at, hung = _follow(child, lines, tally, readers[0], limit)
         if hung:
             child.kill()
         status = child.wait()
@@ -75,7 +72,7 @@ def _one_child(tally: Tally, command: list[str], first: int, count: int) -> int:
 
 
 def _follow(
-    child: subprocess.Popen[str], lines: queue.Queue[str], tally: Tally, reader: threading.Thread
+    child: subprocess.Popen[str], lines: queue.Queue[str], tally: Tally, reader: threading.Thread, limit: float
 ) -> tuple[int | None, bool]:
     """Take down outcomes; the mutant that was begun and not ended, and whether its time is up."""
     at: int | None = None
@@ -86,7 +83,7 @@ def _follow(
         except queue.Empty:
             if not reader.is_alive() and lines.empty():
                 return at, False
-            if at is not None and (_cpu(child.pid) - spent > CPU_LIMIT or time.monotonic() - begun > WALL_LIMIT):
+            if at is not None and (_cpu(child.pid) - spent > limit or time.monotonic() - begun > WALL_LIMIT):
                 return at, True
             continue
         if line.startswith('"'):

@@ -64,12 +64,12 @@ def _synthetic(engine: str) -> bytes:
         return synthetic.to_bytes(made, Path(folder), engine)
 
 
-def _old_hdf5(payload: bytes) -> bytes:
-    """The same content in HDF5's oldest layout: headers, trees and heaps without checksums."""
+def _copied(payload: bytes, layout: str) -> bytes:
+    """The same content in HDF5's oldest layout, without any checksum, or in its latest, as NetCDF-C writes it."""
     import h5py
 
     target = io.BytesIO()
-    with h5py.File(io.BytesIO(payload), "r") as source, h5py.File(target, "w", libver=("earliest", "v108")) as copy:
+    with h5py.File(io.BytesIO(payload), "r") as source, h5py.File(target, "w", libver=(layout, "v110")) as copy:
         for name in source:
             item = source[name]
             made = copy.create_dataset(name, data=item[()], dtype=item.dtype)
@@ -103,7 +103,8 @@ def _deck(text: str) -> Callable[[], Subject]:
 
 SUBJECTS: dict[str, Callable[[], Subject]] = {
     "hdf5": lambda: Subject({"a.nc": _synthetic("h5netcdf")}, _data),
-    "hdf5-old": lambda: Subject({"a.nc": _old_hdf5(_synthetic("h5netcdf"))}, _data),
+    "hdf5-old": lambda: Subject({"a.nc": _copied(_synthetic("h5netcdf"), "earliest")}, _data),
+    "hdf5-new": lambda: Subject({"a.nc": _copied(_synthetic("h5netcdf"), "v110")}, _data),
     "netcdf3": lambda: Subject({"a.nc": _synthetic("scipy")}, _data),
     "netcdf3-own": lambda: Subject({"a.nc": dump_netcdf(wamit_sets.whole())}, _data),
     "wamit": lambda: Subject(wamit_sets.files(), _data),

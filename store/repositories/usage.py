@@ -26,13 +26,17 @@ class UsageRepository(Scoped):
     """Sums over the team that the caller has been let into; nobody learns a row by them."""
 
     def of_team(self) -> Usage:
-        queued = self._count(select(func.count()).select_from(Run).where(Run.state == QUEUED), Run)
-        runs = self._count(select(func.count()).select_from(Run), Run)
         files = size = 0
         for model in (DataSet, Mesh):
             files += self._count(select(func.count()).select_from(model), model)
             size += self._count(select(func.coalesce(func.sum(model.size), 0)).select_from(model), model)
-        return Usage(queued, runs, files, size)
+        return Usage(self.queued(), self.runs(), files, size)
+
+    def queued(self) -> int:
+        return self._count(select(func.count()).select_from(Run).where(Run.state == QUEUED), Run)
+
+    def runs(self) -> int:
+        return self._count(select(func.count()).select_from(Run), Run)
 
     def _count(self, query: Select[Any], model: Any) -> int:
         projects = select(Project.id).where(Project.team_id == self.scope.team_id)

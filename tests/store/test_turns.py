@@ -20,7 +20,8 @@ THERE = "c" * 32, "d" * 32
 
 
 @pytest.fixture
-def teams(database: Database) -> Database:
+def teams(database: Database, monkeypatch: pytest.MonkeyPatch) -> Database:
+    monkeypatch.setattr("store.recent.SECONDS", 0.0)
     with database.write() as session:
         for team, project in (HERE, THERE):
             session.add(Team(id=team, name=team[:3]))
@@ -85,6 +86,19 @@ def test_shares_are_of_work_not_of_runs(teams: Database) -> None:
     queue(teams, scope(THERE, "2"), 40, weight=1.0)
     shares = Counter(served(teams, 33))
     assert shares == {"1": 3, "2": 30} or shares == {"1": 4, "2": 29}
+
+
+def test_numbers_of_a_moment_ago_keep_the_order(teams: Database, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("store.recent.SECONDS", 60.0)
+    queue(teams, scope(HERE, "1"), 10)
+    queue(teams, scope(THERE, "2"), 10)
+    with teams.write() as session:
+        taken = [TaskRepository(session).claim_next("runs", "w", 60, 3) for _ in range(20)]
+        users = [(session.get_one(Run, ticket.run_id).created_by or "-")[0] for ticket in taken if ticket]
+    assert Counter(users[:10]) == {"1": 5, "2": 5}
+    for user in ("1", "2"):
+        ids = [ticket.task_id for ticket, whose in zip(taken, users, strict=True) if ticket and whose == user]
+        assert ids == sorted(ids)
 
 
 def test_priority_comes_before_shares(teams: Database) -> None:

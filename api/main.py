@@ -129,6 +129,7 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
         users,
     ):
         base.include_router(module.router)
+    base.include_router(queue.quota_router)
     base.include_router(shares.opened)
     app.include_router(base)
     return app

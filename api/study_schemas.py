@@ -67,3 +67,17 @@ class QueueInfo(BaseModel):
     items: list[QueueClass]
     busy_workers: int = Field(description="processes with a task in hand")
     seconds_left: float | None = Field(description="estimate of the seconds until all that waits is done")
+
+
+class QuotaItem(BaseModel):
+    name: str = Field(examples=["queued runs"])
+    used: int = Field(examples=[120])
+    limit: int | None = Field(examples=[20000], description="None: there is none")
+    left: int | None = Field(examples=[19880])
+    setting: str = Field(examples=["SLOWDRIFT_QUOTA_QUEUED_RUNS"], description="with which it is changed")
+
+
+class QuotaInfo(BaseModel):
+    """Limits of the caller's team."""
+
+    items: list[QuotaItem]

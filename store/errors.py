@@ -29,6 +29,10 @@ class TooManyError(SlowdriftError):
         super().__init__(message)
 
 
+class QuotaError(SlowdriftError):
+    """The team has as much as it may have."""
+
+
 class ConflictError(SlowdriftError):
     """The row is in a state that does not allow this."""
 

@@ -197,7 +197,7 @@ class Run(Base):
     finished_at: Mapped[datetime | None] = mapped_column(default=None)
 
 
-CLAIMS = Index("ix_tasks_claim", "queue", "state", "priority", "id")
+CLAIMS = Index("ix_tasks_claim", "queue", "state", "priority", "turn", "id")
 
 
 class Task(Base):
@@ -213,6 +213,8 @@ class Task(Base):
     queue: Mapped[str] = mapped_column(String(50), default="runs")
     priority: Mapped[int] = mapped_column(default=20, server_default="20")
     """Smaller is sooner (store/priority.py)."""
+    turn: Mapped[float] = mapped_column(Seconds, default=0.0, server_default="0")
+    """Within a priority, smaller is sooner (store/repositories/turns.py)."""
     state: Mapped[str] = mapped_column(String(20), default=QUEUED)
     attempt: Mapped[int] = mapped_column(default=0)
     """Raised by every claim; a write with another attempt than the row's is refused."""

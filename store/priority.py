@@ -16,6 +16,9 @@ NAMES = {"interactive": INTERACTIVE, "normal": NORMAL, "batch": BATCH}
 QUICK_WEIGHT = 3.0
 """A run of at most so much work, in frequency-domain runs, is interactive by itself (solver/plan.py)."""
 
+MOST_INTERACTIVE = 20
+"""Tasks of one user that may wait as interactive; further small runs are normal until some have begun."""
+
 
 def by_size(weights: Iterable[float]) -> int:
     return INTERACTIVE if sum(weights) <= QUICK_WEIGHT else NORMAL

@@ -78,6 +78,14 @@ class Settings(BaseModel):
     """Open connections of one API process; fewer where the system allows fewer open files."""
     max_connections_per_address: int = Field(500, ge=0)
     """Of them from one address; 0: any number. This machine and trusted proxies are not counted."""
+    quota_queued_runs: int = Field(20_000, ge=0)
+    """Runs of one team that may wait; 0: any number."""
+    quota_stored_runs: int = Field(200_000, ge=0)
+    """Runs of one team that may be stored; 0: any number."""
+    quota_data_sets: int = Field(2000, ge=0)
+    """Data sets and meshes of one team; 0: any number."""
+    quota_data_bytes: int = Field(20_000_000_000, ge=0)
+    """Bytes of them together; 0: any number."""
     retention_days: float = Field(0.0, ge=0)
     """Ended runs older than this are deleted unless they are pinned; 0: none ever."""
     metrics_token: str = Field("", repr=False)

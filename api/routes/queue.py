@@ -5,12 +5,33 @@ from __future__ import annotations
 from fastapi import APIRouter
 
 from store.priority import name_of
+from store.quotas import quotas
 from store.repositories import QueueRepository
 
-from ..context import ContextDep
-from ..study_schemas import QueueClass, QueueInfo
+from ..context import ContextDep, ScopeDep
+from ..study_schemas import QueueClass, QueueInfo, QuotaInfo, QuotaItem
 
 router = APIRouter(prefix="/queue", tags=["studies"])
+quota_router = APIRouter(tags=["studies"])
+
+
+@quota_router.get("/quota")
+def get_quota(context: ContextDep, scope: ScopeDep) -> QuotaInfo:
+    """What the team has queued and stored, the limits, and what is left of them."""
+    with context.database.read() as session:
+        found = quotas(context.settings, session, scope)
+    return QuotaInfo(
+        items=[
+            QuotaItem(
+                name=each.name,
+                used=each.used,
+                limit=each.limit or None,
+                left=each.left,
+                setting=f"SLOWDRIFT_{each.setting}",
+            )
+            for each in found
+        ]
+    )
 
 
 @router.get("")

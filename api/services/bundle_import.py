@@ -11,6 +11,7 @@ from solver.outcome import CaseError, FieldError
 from store.clock import utc_now
 from store.isolation import Stopped, stream
 from store.models import ChannelRow, Run
+from store.quotas import check_file, check_runs
 from store.reading import damaged, limits_for
 from store.repositories import CaseRepository, DataSetRepository, RunRepository
 from store.repositories.cases import NewCase
@@ -40,8 +41,11 @@ def import_run(context: Context, scope: Scope, file: IO[bytes]) -> tuple[RunInfo
         known = imports.known(content_hash)
         if known is not None:
             return info(runs.view(known)), False
+        check_runs(context.settings, unit.session, scope, 1, queued=False)
         version = CaseRepository(unit.session, scope).save(NewCase(*first["case"]))[0]
-        data_set = DataSetRepository(unit.session, scope).save(*data)[0] if data else None
+        data_set, made_data = DataSetRepository(unit.session, scope).save(*data) if data else (None, False)
+        if data_set and made_data:
+            check_file(context.settings, unit.session, scope, data_set.size)
         run = _run(manifest, first["summary"], version.id, data_set.id if data_set else None)
         origin: dict[str, Any] = {
             "run": manifest.run.model_dump(mode="json", include={"id", "created_at", "finished_at"})

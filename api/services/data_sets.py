@@ -13,6 +13,7 @@ from solver.vessel.data import HydrodynamicData
 from solver.vessel.quality import quality
 from store.isolation import Stopped, call
 from store.models import DataSet
+from store.quotas import check_file
 from store.reading import damaged, limits_for, read_bytes
 from store.repositories import DataSetRepository
 from store.scope import Scope
@@ -45,7 +46,10 @@ def add(
     filename, content_hash, payload, summary = read
     label = harmless(name or "") or filename
     with context.change() as unit:
-        return DataSetRepository(unit.session, scope).save(label, filename, content_hash, payload, summary)
+        row, made = DataSetRepository(unit.session, scope).save(label, filename, content_hash, payload, summary)
+        if made:
+            check_file(context.settings, unit.session, scope, row.size)
+        return row, made
 
 
 def conventions(form: Mapping[str, str | None]) -> WamitFiles | None:

@@ -13,6 +13,7 @@ from solver.outcome import CaseError, DataError, FieldError
 from store.errors import NotFoundError
 from store.hydrodynamics import Mesh
 from store.isolation import Stopped, call
+from store.quotas import check_file, check_runs
 from store.reading import HULL_SECONDS, damaged, limits_for
 from store.repositories.hydrodynamics import HydrodynamicsRepository, JobView, MeshRepository, NewJob
 from store.scope import Scope
@@ -41,6 +42,8 @@ def upload(context: Context, scope: Scope, payload: bytes, filename: str, name: 
     content_hash = hashlib.sha256(payload).hexdigest()
     with context.change() as unit:
         row, made = MeshRepository(unit.session, scope).save(label, content_hash, payload, found)
+        if made:
+            check_file(context.settings, unit.session, scope, row.size)
     return MeshDetail(**mesh_info(row).model_dump(), preview=shown), made
 
 
@@ -84,6 +87,7 @@ def start(context: Context, scope: Scope, body: Body, once: Once) -> Hydrodynami
         repository = HydrodynamicsRepository(unit.session, scope)
 
         def make() -> str:
+            check_runs(context.settings, unit.session, scope, 1)
             run, doors = repository.start(new)
             unit.rings.extend(doors)
             return run.id

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from fastapi.exceptions import RequestValidationError
 
 from solver.case import Case, to_yaml
+from solver.outcome import CaseError, FieldError
 from solver.plan import plan
+from solver.results.part import Chunk
 from store.effective import identity, stored_case
 from store.errors import NotFoundError
 from store.models import CASE, FINAL, CaseVersion, DataSet, Run
-from store.priority import NAMES, name_of
+from store.priority import INTERACTIVE, NAMES, QUICK_WEIGHT, by_size, name_of
+from store.quotas import check_runs
 from store.repositories import CaseRepository, RunRepository
 from store.repositories.runs import Labels, RunView
 from store.scope import Scope
@@ -36,8 +41,9 @@ def start(context: Context, scope: Scope, request: RunRequest, once: Once) -> tu
                 return info(runs.view(found.id)), False
 
         def make() -> str:
+            check_runs(context.settings, unit.session, scope, 1)
             version = version_of(cases, of)
-            run, doors = runs.create(version, analyses, chunks, data_set, warnings, labels_of(request))
+            run, doors = runs.create(version, analyses, chunks, data_set, warnings, labels_of(request, chunks))
             unit.rings.extend(doors)
             return run.id
 
@@ -66,8 +72,16 @@ def version_of(cases: CaseRepository, of: CaseVersion | Checked) -> CaseVersion:
     return cases.save(of.as_new())[0] if isinstance(of, Checked) else cases.get(of.id)
 
 
-def labels_of(request: Chosen) -> Labels:
+def labels_of(request: Chosen, chunks: Iterable[Chunk]) -> Labels:
+    """Raises CaseError for a priority that is more urgent than the size of the work allows."""
     priority = None if request.priority is None else NAMES[request.priority]
+    weight = sum(chunk.weight for chunk in chunks)
+    if priority == INTERACTIVE and by_size([weight]) != INTERACTIVE:
+        message = (
+            f"`interactive` is for at most {QUICK_WEIGHT:g} frequency-domain runs' work, this is {weight:.3g}; leave it "
+            "out, or say normal or batch"
+        )
+        raise CaseError([FieldError(("priority",), message, request.priority or "")])
     return Labels(request.name, tuple(dict.fromkeys(request.tags)), priority)
 
 
@@ -78,6 +92,7 @@ def again(context: Context, scope: Scope, run_id: str, once: Once) -> RunInfo:
         runs = RunRepository(unit.session, scope)
 
         def make() -> str:
+            check_runs(context.settings, unit.session, scope, 1)
             run, doors = runs.again(run_id, plan(case))
             unit.rings.extend(doors)
             return run.id

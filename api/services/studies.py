@@ -18,6 +18,7 @@ from solver.plan import plan
 from store.effective import chosen
 from store.models import ACTIVE, CANCELLED, FAILED, SUCCEEDED, DataSet, Study
 from store.pointers import replaced, value_at
+from store.quotas import check_runs
 from store.reading import read_bytes
 from store.repositories import CaseRepository, RunRepository, StudyRepository
 from store.repositories.studies import StudyView, Variant
@@ -40,11 +41,13 @@ def start(context: Context, scope: Scope, request: StudyRequest, once: Once) -> 
     case, of = base_of(context, scope, request)
     changes = _changes(request)
     variants = _Checker(context, scope, case, request.analyses).all(changes)
+    labels = labels_of(request, [chunk for variant in variants for chunk in variant.chunks])
     pointers = list(dict.fromkeys(pointer for each in changes for pointer in each))
     with context.change() as unit:
         studies = StudyRepository(unit.session, scope)
 
         def make() -> str:
+            check_runs(context.settings, unit.session, scope, len(variants))
             study = Study(
                 name=request.name or case.name,
                 analyses=list(request.analyses or case.analyses.requested()),
@@ -52,7 +55,7 @@ def start(context: Context, scope: Scope, request: StudyRequest, once: Once) -> 
                 pointers=pointers,
             )
             version = version_of(CaseRepository(unit.session, scope), of)
-            doors = studies.create(study, version, variants, labels_of(request))
+            doors = studies.create(study, version, variants, labels)
             unit.rings.extend(("", door) for door in doors)
             return study.id
 

@@ -32,8 +32,9 @@ from ..models import (
     Task,
 )  # fmt: skip
 from ..people import User
-from ..priority import NORMAL, by_size, doors
+from ..priority import INTERACTIVE, MOST_INTERACTIVE, NORMAL, by_size, doors
 from .scoped import Scoped
+from .turns import TurnRepository
 
 
 @dataclass(frozen=True)
@@ -105,7 +106,9 @@ class RunRepository(Scoped):
     ) -> tuple[Run, list[tuple[str, str]]]:
         if not chunks:
             raise ValueError("a run needs at least one chunk")
-        priority = by_size(chunk.weight for chunk in chunks) if priority is None else priority
+        if priority is None or priority == INTERACTIVE:
+            priority = self.class_of(chunks)
+        turns = TurnRepository(self.session, self.scope).of([chunk.weight for chunk in chunks], queue, priority)
         self.session.add(run)
         self.session.flush()
         now = self.session.scalar(select(clock(self.session)))
@@ -117,13 +120,25 @@ class RunRepository(Scoped):
                 weight=chunk.weight,
                 queue=queue,
                 priority=priority,
+                turn=turn,
                 rung_at=now,
             )
-            for number, chunk in enumerate(chunks)
+            for number, (chunk, turn) in enumerate(zip(chunks, turns, strict=True))
         ]
         self.session.add_all(tasks)
         self.session.flush()
         return run, [(task.id, door) for task in tasks for door in doors(queue, priority)]
+
+    def class_of(self, chunks: Sequence[Chunk]) -> int:
+        """Small work is interactive as long as few interactive runs of the same user wait."""
+        priority = by_size(chunk.weight for chunk in chunks)
+        if priority != INTERACTIVE:
+            return priority
+        waiting = self._select(Run).join(Task, Task.run_id == Run.id)
+        waiting = waiting.where(Task.queue == RUNS, Task.state == QUEUED, Task.priority <= INTERACTIVE)
+        waiting = waiting.where(Run.created_by == self.scope.user_id).limit(MOST_INTERACTIVE)
+        few = len(self.session.scalars(waiting.with_only_columns(Run.id)).all()) < MOST_INTERACTIVE
+        return INTERACTIVE if few else NORMAL
 
     def identical(self, same: str | None) -> Run | None:
         """The newest succeeded run with this identity."""

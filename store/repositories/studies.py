@@ -29,9 +29,10 @@ from ..models import (
     Study,
     Task,
 )  # fmt: skip
-from ..priority import BATCH, doors
-from .runs import Labels
+from ..priority import BATCH, INTERACTIVE, doors
+from .runs import Labels, RunRepository
 from .scoped import Scoped
+from .turns import TurnRepository
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,14 @@ class StudyRepository(Scoped):
         self.session.flush()
         now, moment = self.session.scalar(select(clock(self.session))), utc_now()
         priority = BATCH if labels.priority is None else labels.priority
+        chunks = [chunk for variant in variants for chunk in variant.chunks]
+        if priority == INTERACTIVE:
+            priority = RunRepository(self.session, self.scope).class_of(chunks)
+        turns = iter(
+            TurnRepository(self.session, self.scope).of([chunk.weight for chunk in chunks], RUNS, priority)
+            if chunks
+            else []
+        )
         runs, tasks = [], []
         for index, variant in enumerate(variants):
             run_id = new_id()
@@ -93,6 +102,7 @@ class StudyRepository(Scoped):
                     "chunk": chunk.as_dict(),
                     "weight": chunk.weight,
                     "priority": priority,
+                    "turn": next(turns),
                     "rung_at": now,
                 }
                 for number, chunk in enumerate(variant.chunks)

@@ -78,7 +78,7 @@ class TaskRepository:
     def claim_next(
         self, queue: str, worker: str, lease: float, max_attempts: int, up_to: int | None = None
     ) -> Ticket | None:
-        """The most urgent queued task, the oldest of equals; with `up_to`, none of a larger priority number."""
+        """The most urgent queued task, of equals that of the smallest turn; with `up_to`, none of a larger priority number."""
         for _ in range(NEXT_TRIES):
             found = self._most_urgent(queue, up_to, skip_locked=True) or self._most_urgent(queue, up_to)
             if found is None:
@@ -93,7 +93,7 @@ class TaskRepository:
             select(Run, Task.id)
             .join(Task, Task.run_id == Run.id)
             .where(Task.queue == queue, Task.state == QUEUED, Run.state.in_((QUEUED, RUNNING)))
-            .order_by(Task.priority, Task.id)
+            .order_by(Task.priority, Task.turn, Task.id)
             .limit(1)
             .with_for_update(of=Run, skip_locked=skip_locked)
             .execution_options(populate_existing=True)

@@ -169,6 +169,7 @@ MATRIX: dict[str, Line] = {
     "POST /api/v1/imports/run": Line("edit", 201, sent=a_bundle),
     # studies
     "GET /api/v1/queue": Line("read", 200),  # in numbers only
+    "GET /api/v1/quota": Line("read", 200),
     "POST /api/v1/studies": Line("edit", 202, sent=lambda r: {"json": r.study_request}),
     "GET /api/v1/studies": Line("read", 200),
     "GET /api/v1/studies/{study_id}": Line("read row", 200, STUDY),

@@ -30,6 +30,8 @@ UNSCOPED = {
     "RecoveryRepository": "puts right what faults leave behind, of all projects",
     "HydrodynamicTasks": "a worker's",
     "QueueRepository": "counts of the queues, for operators",
+    "TurnRepository": "sums over the queue, of all teams",
+    "UsageRepository": "sums over the caller's team, of all its projects",
 }
 BY_KEY = {
     "CaseRepository.save": "numbers the versions of a case that it has looked up in its scope",
@@ -49,6 +51,7 @@ OUTSIDE = {
     "store/hydrodynamics.py": "columns",
     "store/people.py": "columns",
     "store/migrations/__init__.py": "the schema's version",
+    "store/health.py": "a row that the health check itself has written",
     "store/estimate.py": "sums over the whole queue: how long a run has to wait depends on everybody's",
     "store/filters.py": "conditions, for a repository's query",
 }

@@ -30,7 +30,7 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 Range = tuple[float, float]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Chain:
     """One chain: depth, where its anchor lies and its length [m]; reference ranges [kN] by heave amplitude [m]."""
 

@@ -1,8 +1,9 @@
-"""Tables of a summary for a terminal: kN, m, degrees."""
+"""Tables of a summary for a terminal: kN (N at model scale), m, degrees."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 from rich.console import Console
@@ -55,26 +56,32 @@ def _line_types(types: dict[str, Any]) -> list[Table | str]:
     return told
 
 
+def _force_unit(forces: Iterable[float]) -> tuple[float, str]:
+    """Size and name of the unit of forces: N where all of them are below 1 kN, so that a model in a tank has digits."""
+    return (1.0, "N") if max(map(abs, forces), default=1e3) < 1e3 else (1e3, "kN")
+
+
 def _statics(statics: dict[str, Any]) -> list[Table]:
+    size, unit = _force_unit(line[end]["tension"] for line in statics["lines"].values() for end in ("end_a", "end_b"))
     table = _table(
         "Statics",
         "line, end",
-        "tension kN",
-        "force x kN",
-        "force y kN",
-        "force z kN",
+        f"tension {unit}",
+        f"force x {unit}",
+        f"force y {unit}",
+        f"force z {unit}",
         "length m",
         "on the bed m",
-        "in water kN",
+        f"in water {unit}",
     )
     for name, line in statics["lines"].items():
         for end in ("end_a", "end_b"):
-            forces = [f"{value / 1e3:.2f}" for value in line[end]["force"]]
+            forces = [f"{value / size:.2f}" for value in line[end]["force"]]
             first = end == "end_a"
             table.add_row(
-                f"{name}, {end[-1]}", f"{line[end]['tension'] / 1e3:.2f}", *forces,
+                f"{name}, {end[-1]}", f"{line[end]['tension'] / size:.2f}", *forces,
                 f"{line['length']:.2f}" if first else "", f"{line['grounded_length']:.1f}" if first else "",
-                f"{line['weight_in_water'] / 1e3:.1f}" if first else "",
+                f"{line['weight_in_water'] / size:.1f}" if first else "",
             )  # fmt: skip
     tables = [table]
     if "vessel" in statics:
@@ -106,19 +113,27 @@ def _frequency(result: dict[str, Any]) -> list[Table]:
             table.add_row(label, *(_motion(dof, result["vessel_std"][band][dof]) for dof in DOF))
         tables.append(table)
     if any("tension_std" in line for line in result["lines"].values()):
+        size, unit = _force_unit(line["largest"]["tension"] for line in result["lines"].values())
         table = _table(
-            "Tension, standard deviation (kN)", "line", "WF end a", "WF end b", "LF end a", "LF end b", "maximum 3 h"
+            f"Tension, standard deviation ({unit})",
+            "line",
+            "WF end a",
+            "WF end b",
+            "LF end a",
+            "LF end b",
+            "maximum 3 h",
         )
         for name, line in result["lines"].items():
             wf, lf = line["tension_std"]["wf"], line["tension_std"]["lf"]
             values = (wf[0], wf[-1], lf[0], lf[-1], line["largest"]["tension"])
-            table.add_row(name, *(f"{value / 1e3:.1f}" for value in values))
+            table.add_row(name, *(f"{value / size:.1f}" for value in values))
     else:
-        table = _table("Tension, amplitude (kN)", "line", "end a", "end b", "largest", "mean")
+        size, unit = _force_unit(max(line["tension_amplitude"]) for line in result["lines"].values())
+        table = _table(f"Tension, amplitude ({unit})", "line", "end a", "end b", "largest", "mean")
         for name, line in result["lines"].items():
             values = line["tension_amplitude"]
             shown = (values[0], values[-1], max(values), sum(values) / len(values))
-            table.add_row(name, *(f"{value / 1e3:.2f}" for value in shown))
+            table.add_row(name, *(f"{value / size:.2f}" for value in shown))
     return [*tables, table]
 
 
@@ -131,8 +146,9 @@ def _time(result: dict[str, Any]) -> list[Table]:
             std, error = result["vessel_std"][band], result["vessel_std_error"][band]
             table.add_row(label, *(f"{_motion(dof, std[dof])} ± {_motion(dof, error[dof])}" for dof in DOF))
         tables.append(table)
+    size, unit = _force_unit(line["largest"]["tension"] for line in result["lines"].values())
     table = _table(
-        "Time domain, tension (kN)",
+        f"Time domain, tension ({unit})",
         "line",
         "WF σ end a",
         "WF σ end b",
@@ -146,5 +162,5 @@ def _time(result: dict[str, Any]) -> list[Table]:
         wf, lf, end = line["tension_std"]["wf"], line["tension_std"]["lf"], line["end_b_tension"]
         anchor = (line["end_a_tension"]["max"], line["anchor_vertical"]["max"])
         values = (wf[0], wf[-1], lf[-1], end["min"], end["max"], *anchor)
-        table.add_row(name, *(f"{value / 1e3:.1f}" for value in values))
+        table.add_row(name, *(f"{value / size:.1f}" for value in values))
     return [*tables, table]

@@ -6,9 +6,12 @@ tests/Mooring/lowe_and_langley_2006 (ranges of the reference histories; decks as
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import math
+import os
 import tempfile
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -166,12 +169,25 @@ def deck(chain: Chain) -> str:
     ])  # fmt: skip
 
 
+@contextlib.contextmanager
+def _silent() -> Iterator[None]:
+    """Without what MoorDyn prints."""
+    kept, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+        os.close(nowhere)
+
+
 @cache
 def with_moordyn(chain: Chain, heave: float) -> dict[str, Range] | None:
     """The same ranges by MoorDyn [kN]; None where it is not installed."""
     if moordyn is None:
         return None
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder, _silent():
         path = Path(folder) / "chain.txt"
         path.write_text(deck(chain))
         system = moordyn.Create(str(path))

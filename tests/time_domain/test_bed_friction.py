@@ -21,7 +21,7 @@ MASS, LENGTH, G = 80.0, 60.0, 9.807
 def _dragged(mu: float = MU, **spec: Any) -> dict[str, Any]:
     """A chain that lies on the bed, drag-free, its end b pulled to and fro along it."""
     data = span(
-        LENGTH, (0, 0, -50), (LENGTH * 1.0005, 0, -50), 12, 50.0, mass=MASS, diameter=0.01, EA=2e6, EI=0.0, compression="allowed",
+        LENGTH, (0, 0, -50), (LENGTH * 1.0005, 0, -50), 12, 50.0, mass=MASS, diameter=0.01, EA=2e6, compression="allowed",
         drag={"normal": 0, "tangential": 0}, added_mass={"normal": 0, "tangential": 0},
     )  # fmt: skip
     data["lines"]["line"]["allow_stretch"] = True

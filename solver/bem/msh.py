@@ -8,7 +8,7 @@ from .panels import Panels
 from .textlines import Lines
 
 Array = np.ndarray
-SKIPPED = (1, 15)  # lines, points
+SKIPPED = {1: 2, 15: 1}  # lines, points: number of nodes
 TAKEN = {2: 3, 3: 4}  # triangles, quadrangles: number of nodes
 REMEDY = "; save the surface as first-order triangles or quadrangles (Mesh.SaveAll off, one physical surface)"
 
@@ -80,12 +80,13 @@ def _nodes4(lines: Lines, nodes: dict[int, int], points: list[Array]) -> None:
 
 
 def _add_element(lines: Lines, kind: int, corners: list[int], nodes: dict[int, int], faces: list[list[int]]) -> None:
+    wanted = TAKEN.get(kind) or SKIPPED.get(kind)
+    if wanted is None:
+        raise lines.fault(f"an element of gmsh's type {kind}" + REMEDY)
+    if len(corners) != wanted:
+        raise lines.fault(f"an element of type {kind} has {len(corners)} nodes; expected {wanted}")
     if kind in SKIPPED:
         return
-    if kind not in TAKEN:
-        raise lines.fault(f"an element of gmsh's type {kind}" + REMEDY)
-    if len(corners) != TAKEN[kind]:
-        raise lines.fault(f"an element of type {kind} has {len(corners)} nodes; expected {TAKEN[kind]}")
     unknown = [corner for corner in corners if corner not in nodes]
     if unknown:
         raise lines.fault(f"an element has node {unknown[0]}, which is not among the {len(nodes)} nodes")

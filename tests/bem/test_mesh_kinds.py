@@ -7,7 +7,7 @@ import pytest
 from solver.bem.read import read_mesh
 from solver.outcome import DataError
 
-from .shapes import as_gdf, as_pnl, box, hemisphere, hemisphere_quarter
+from .shapes import as_gdf, as_msh2, as_pnl, box, hemisphere, hemisphere_quarter
 
 GDF = as_gdf(box(size=1.0)).decode()
 ROWS = GDF.splitlines()
@@ -127,6 +127,19 @@ def test_the_symmetries_of_hams_are_those_of_the_planes_x_0_and_y_0() -> None:
 def test_a_damaged_mesh_of_hams_is_refused(old: str, new: str, words: str) -> None:
     assert old in PNL
     assert words in refusal(PNL.replace(old, new, 1), "a.pnl")
+
+
+# --- gmsh
+
+
+@pytest.mark.parametrize(("kind", "nodes"), [(1, 2), (15, 1)])
+def test_a_panel_that_calls_itself_a_line_or_a_point_is_refused(kind: int, nodes: int) -> None:
+    """Lines and points are skipped, and so would be the panel."""
+    text = as_msh2(box(size=1.0)).decode()
+    changed = text.replace(" 3 2 0 1 ", f" {kind} 2 0 1 ", 1)
+    assert changed != text
+    assert f"an element of type {kind} has 4 nodes; expected {nodes}" in refusal(changed, "a.msh")
+    assert read_mesh(text.encode(), "a.msh")[0].volume == pytest.approx(8.0)
 
 
 # --- other kinds

@@ -74,7 +74,7 @@ def check_runs(settings: Settings, session: Session, scope: Scope, more: int, qu
 def _counted(count: Callable[[], int], more: int, limit: int) -> int:
     """The number, as it was counted a few seconds ago where that is far from the limit."""
     usage: Any = count.__self__  # type: ignore[attr-defined]
-    key = (str(usage.session.get_bind().url), usage.scope.team_id, count.__name__)
+    key = (str(usage.session.get_bind().engine.url), usage.scope.team_id, count.__name__)
     known = _recent.get(key)
     if known is not None and known + more <= NEAR * limit:
         _recent.change(key, known + more)

@@ -25,7 +25,7 @@ class TurnRepository(Scoped):
 
     def of(self, weights: Sequence[float], queue: str, priority: int) -> list[float]:
         """Turns of new tasks of this caller, of these weights, in their order."""
-        place = (str(self.session.get_bind().url), self.scope.team_id, self.scope.user_id, queue, priority)
+        place = (str(self.session.get_bind().engine.url), self.scope.team_id, self.scope.user_id, queue, priority)
         last, others = _recent.get(place) or self._own(queue, priority)
         size = float(others + 1)
         now = self._now(queue, priority)

@@ -60,7 +60,7 @@ class Probe:
             worst = max(observed(block.run, seen), key=lambda one: one.severity, default=None)
             if worst is not None and worst.severity > 1.0:
                 self._note(worst)
-                if block.done or worst.what == "reach" or worst.severity > EARLY:
+                if block.done or worst.what in ("reach", "snatch") or worst.severity > EARLY:
                     raise self._refusal(worst, seen, between)
         self.marks = [self.marks[-1], block.mark]
 

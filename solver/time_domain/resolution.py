@@ -16,6 +16,9 @@ from .block import Run
 Array = np.ndarray
 #: largest second difference of an element's tension from step to step, as a share of its range
 KINK_WARNED, KINK_REFUSED = 0.05, 0.3
+#: the same where a line that was slack tightens again, which bends tension whatever the step; above it, tension jumps up
+#: and down by most of its range from one step to the next
+SNATCH_REFUSED = 1.5
 #: largest change in a step of the bed's force on a node that strikes it, as a share of that force's range, or of half the
 #: line's largest range of tension where that is more
 BLOW_REFUSED = 0.06
@@ -70,8 +73,8 @@ class Finding:
 
     @property
     def severity(self) -> float:
-        """The value over the limit above which it is refused; 0 for a snatch, which is never refused."""
-        limits = {"kink": KINK_REFUSED, "blow": BLOW_REFUSED, "reach": REACH_REFUSED, "snatch": np.inf}
+        """The value over the limit above which it is refused."""
+        limits = {"kink": KINK_REFUSED, "blow": BLOW_REFUSED, "reach": REACH_REFUSED, "snatch": SNATCH_REFUSED}
         return self.value / limits[self.what]
 
     def fact(self, h: float) -> str:
@@ -91,7 +94,7 @@ class Finding:
         if self.what == "snatch":
             return (
                 f"{where}: the line was slack, and as it tightens tension bends by {100 * self.value:.3g} % of its range "
-                f"within a step of {h:g} s (smooth below {100 * KINK_WARNED:g} %)"
+                f"within a step of {h:g} s (smooth below {100 * KINK_WARNED:g} %, refused above {100 * SNATCH_REFUSED:g} %)"
             )
         return (
             f"{where}: within a step of {h:g} s tension bends by {100 * self.value:.3g} % of its range (smooth below "
@@ -126,11 +129,11 @@ def suspect(run: Run, watch: Watch) -> bool:
 
 SHORTER = "Use a smaller step, a softer seabed with a wider transition, or look for a line that snaps slack there."
 HEADS = {
-    "kink": "the step is too long", "blow": "the step is too long",
+    "kink": "the step is too long", "snatch": "the step is too long", "blow": "the step is too long",
     "reach": "nodes go too far for waves at the instantaneous position",
 }  # fmt: skip
 REMEDIES = {
-    "kink": SHORTER, "blow": SHORTER,
+    "kink": SHORTER, "snatch": SHORTER, "blow": SHORTER,
     "reach": "Use wave_kinematics: mean, or check the motion that carries the nodes so far.",
 }  # fmt: skip
 
@@ -160,7 +163,7 @@ def worst(found: list[dict[str, Any]]) -> list[Finding]:
 def _kinks(line: LineModel, seen: Seen) -> Iterator[Finding]:
     """Second differences of tension against its range, element by element and seed by seed (T16).
 
-    A seed in which the line gives way (L17) has them whatever the step, when it tightens again: a snatch, never refused.
+    A seed in which the line gives way (L17) has them whatever the step, when it tightens again: a snatch, with a limit of its own.
     """
     gap = seen.kink.shape[0] - (line.nodes - 1)
     spread = seen.highest[gap:] - seen.lowest[gap:]

@@ -163,7 +163,7 @@ def worst(found: list[dict[str, Any]]) -> list[Finding]:
 def _kinks(line: LineModel, seen: Seen) -> Iterator[Finding]:
     """Second differences of tension against its range, element by element and seed by seed (T16).
 
-    A seed in which the line gives way (L17) has them whatever the step, when it tightens again: a snatch, with a limit of its own.
+    A seed in which the line gives way (L17) has them whatever the step, when it tightens again: a snatch, with its own limit.
     """
     gap = seen.kink.shape[0] - (line.nodes - 1)
     spread = seen.highest[gap:] - seen.lowest[gap:]

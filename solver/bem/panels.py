@@ -8,7 +8,10 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ..outcome import DataError
+
 Array = np.ndarray
+CROSSING = 1e-2  # of the farther side: what a half may reach over its plane of symmetry
 WELD = 1e-6  # of the mesh's extent: nearer corners are one
 
 
@@ -169,6 +172,17 @@ def joined(parts: list[Panels]) -> Panels:
     offsets = np.cumsum([0, *(part.vertices.shape[0] for part in parts)])
     faces = [part.faces + offset for part, offset in zip(parts, offsets[:-1], strict=True)]
     return Panels(np.concatenate([part.vertices for part in parts]), np.concatenate(faces))
+
+
+def unfolded(mesh: Panels, axis: int, name: str) -> Panels:
+    """The mesh with its mirror image across the plane where coordinate `axis` is zero. Raises DataError when it crosses it."""
+    low, high = mesh.vertices[:, axis].min(), mesh.vertices[:, axis].max()
+    if min(-low, high) > CROSSING * max(-low, high):
+        raise DataError(
+            f"{name}: a symmetry across {'xyz'[axis]} = 0 is stated, but panels lie on both sides, from {low:.4g} to "
+            f"{high:.4g}; give one side, or no symmetry"
+        )
+    return joined([mesh, mesh.mirrored(axis)])
 
 
 def welded(mesh: Panels, tolerance: float | None = None) -> Panels:

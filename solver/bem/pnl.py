@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .panels import Panels, joined
+from .panels import Panels, unfolded
 from .textlines import Lines
 
 Array = np.ndarray
@@ -34,7 +34,7 @@ def read_pnl(payload: bytes, name: str) -> Panels:
     mesh = Panels(np.array(points), np.array(faces) - 1)
     for axis, flag in enumerate(symmetries):
         if flag:
-            mesh = joined([mesh, mesh.mirrored(axis)])
+            mesh = unfolded(mesh, axis, name)
     return mesh
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..outcome import DataError
 from .msh import read_msh
-from .panels import Panels, joined, welded
+from .panels import Panels, unfolded, welded
 from .pnl import is_pnl, read_pnl
 from .spec import MAX_PANELS
 from .textlines import Lines, fortran_number
@@ -122,7 +122,7 @@ def _read_gdf(payload: bytes, name: str) -> Panels:
     mesh = Panels(corners.reshape(-1, 3), np.arange(4 * count).reshape(-1, 4))
     for axis, flag in ((0, isx), (1, isy)):
         if flag:
-            mesh = joined([mesh, mesh.mirrored(axis)])
+            mesh = unfolded(mesh, axis, name)
     return mesh
 
 
@@ -182,7 +182,7 @@ def _read_nemoh(payload: bytes, name: str) -> Panels:
             raise lines.fault(f"a panel has the corners {panel}; allowed: 1 to {len(points)}")
         faces.append(panel)
     mesh = Panels(np.array(points).reshape(-1, 3), np.array(faces, int).reshape(-1, 4) - 1)
-    return joined([mesh, mesh.mirrored(1)]) if symmetric else mesh
+    return unfolded(mesh, 1, name) if symmetric else mesh
 
 
 # --- STL

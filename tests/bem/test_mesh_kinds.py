@@ -170,3 +170,11 @@ def test_other_kinds_of_mesh_are_named_and_refused(text: str, kind: str | None) 
 
 def test_a_file_that_is_called_gdf_is_told_what_a_gdf_lacks() -> None:
     assert "line 2: 'v' is not a finite number; expected ULEN and GRAV" in refusal("v 0 0 0\nv 1 1\n", "hull.gdf")
+
+
+def test_a_symmetry_of_a_whole_hull_is_refused() -> None:
+    for payload in (as_gdf(box(size=1.0), 0, 1), as_pnl(box(size=1.0), 0, 1), as_gdf(box(size=1.0), 1, 0)):
+        with pytest.raises(
+            DataError, match=r"a\.dat: a symmetry across [xy] = 0 is stated, but panels lie on both sides"
+        ):
+            read_mesh(payload, "a.dat")

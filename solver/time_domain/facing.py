@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -41,7 +42,8 @@ def facing(static: StaticState) -> tuple[StaticState, tuple[int, ...]]:
 
 def _turned(line: LineModel) -> LineModel:
     parts = {name: values for name, values in line.arrays._asdict().items() if name not in WHOLE}
-    arrays = line.arrays._replace(**{name: np.ascontiguousarray(values[::-1]) for name, values in parts.items()})
+    turned: dict[str, Any] = {name: np.ascontiguousarray(values[::-1]) for name, values in parts.items()}
+    arrays = line.arrays._replace(**turned)
     return replace(line, arrays=arrays, end_a=line.end_b, end_b=line.end_a, anchor_at_b=not line.anchor_at_b)
 
 

@@ -9,7 +9,7 @@ from typing import Any, cast
 import pytest
 from fastapi.testclient import TestClient
 
-from api.services.bundle_import import Archive, _case
+from api.services.bundle_check import Archive, _case
 from solver.case import load_case
 from solver.outcome import CaseError
 

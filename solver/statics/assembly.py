@@ -16,6 +16,7 @@ from ..outcome import NotConverged
 
 Array = np.ndarray
 ARM = 30.0  # m: lever that makes a moment comparable with a force
+NUDGE = 3.0  # m: motion that leaves an unstable equilibrium
 MOST_TURN = 0.2  # rad: largest rotation of one step
 
 
@@ -47,7 +48,7 @@ class State:
 
     shapes : node positions of each line, (N+1, 3) [m]; position : vessel, (6,) [m, rad];
     end_forces : force of each line on its supports, end b then end a, (6,) [N]; tensions : of its elements (N,) [N], to
-    start with where the shapes are not yet in equilibrium.
+    start with where the shapes are not yet in equilibrium; unstable : the vessel would leave this equilibrium.
     """
 
     shapes: list[Array]
@@ -57,6 +58,7 @@ class State:
     residual: float = np.inf
     converged: bool = False
     tensions: list[Array] = field(default_factory=list)
+    unstable: bool = False
 
 
 @dataclass(frozen=True)
@@ -83,11 +85,15 @@ class Step:
 
 @dataclass(frozen=True)
 class Assembly:
-    """Lines with constant nodal loads (N+1, 3) [N], and the vessel that holds their fairleads, if any."""
+    """Lines with constant nodal loads (N+1, 3) [N], and the vessel that holds their fairleads, if any.
+
+    extra : constant load on the vessel beyond its own (6,) [N, N m].
+    """
 
     lines: Sequence[LineModel]
     loads: Sequence[Array]
     body: Body | None
+    extra: Array = field(default_factory=lambda: np.zeros(6))
     _known: dict[bytes, list[Array]] = field(default_factory=dict, compare=False)
 
     def with_arrays(self, arrays: Sequence[LineArrays]) -> Assembly:
@@ -136,7 +142,7 @@ class Assembly:
         """r(s): all loads on the vessel (6,) [N, N m], zeros without one (S5)."""
         if self.body is None:
             return np.zeros(6)
-        load = self.body.load(position)
+        load = self.body.load(position) + self.extra
         for line, force, G in zip(self.lines, nodal, self.couplings(position), strict=True):
             load = load + line.multiplicity * G.T @ end_forces(force)
         return load
@@ -212,7 +218,7 @@ class Assembly:
         """Stiffness (6, 6) and load (6,) of the vessel with all lines condensed onto it (S8)."""
         if self.body is None:
             return np.zeros((6, 6)), np.zeros(6)
-        J, r = self.body.stiffness(position), self.body.load(position)
+        J, r = self.body.stiffness(position), self.body.load(position) + self.extra
         for line, (F, _y, _X, Kc, fc), G in zip(self.lines, solved, self.couplings(position), strict=True):
             J = J + line.multiplicity * G.T @ Kc @ G
             r = r + line.multiplicity * G.T @ fc
@@ -222,15 +228,22 @@ class Assembly:
                     J = J + line.multiplicity * self.body.geometric(position, end.arm, force)
         return J, r
 
-    def lowest_stiffness(self, shapes: Sequence[Array], position: Array) -> float:
-        """Lowest eigenvalue of the vessel's stiffness with all lines, each coordinate over its own: negative is unstable."""
+    def weakest(self, shapes: Sequence[Array], position: Array) -> tuple[float, Array]:
+        """Lowest eigenvalue of the vessel's stiffness, each coordinate over its own, and that motion (6,) [m, rad].
+
+        Negative: the equilibrium is unstable. Infinite without a vessel.
+        """
+        if self.body is None:
+            return np.inf, np.zeros(6)
         solved = [
             newton_step(line.arrays, shape, load, 0.0, tension)
             for line, shape, load, tension in zip(self.lines, shapes, self.loads, self.tensions(shapes), strict=True)
         ]
         J, _ = self._vessel(solved, position)
-        size = np.sqrt(np.abs(np.diag(J)))
-        return float(np.linalg.eigvalsh(0.5 * (J + J.T) / np.outer(size, size))[0])
+        size = np.sqrt(np.maximum(np.abs(np.diag(J)), 1e-300))
+        values, vectors = np.linalg.eigh(0.5 * (J + J.T) / np.outer(size, size))
+        motion = vectors[:, 0] / size
+        return float(values[0]), motion / max(np.abs(motion[:3]).max() / NUDGE, np.abs(motion[3:]).max() / NUDGE * ARM)
 
     def moved(self, shapes: Sequence[Array], position: Array, step: Step, share: float) -> tuple[list[Array], Array]:
         """Shapes and vessel position after a share of a step."""

@@ -19,12 +19,15 @@ __all__ = ["State", "equilibrium", "vessel_coupling"]
 
 Array = np.ndarray
 ATTEMPT = 100  # iterations of one attempt of Newton's, at most
-PATIENCE = 15  # iterations in which its residual must fall to a tenth
+PATIENCE = 10  # iterations in which its residual must fall to a tenth
 NEAR = 0.02  # longest move, as a share of what is allowed, below which the matrix holds compression
 RELAX = 300  # iterations of the search with soft lines, at most
 STRETCH = (1.0 / 30.0, 1.0 / 1000.0, 0.0)  # strain under its own weight that a soft line may have, in turn
-FIRST_DAMPING = 0.1
+FIRST_DAMPING, NEXT_DAMPING = 0.1, 0.01  # λ over T/L from a first shape, and from the end of a search
 OVERSHOOT, SHORTENINGS = 0.3, 20  # work against the forces at a step's end over that at its start, and tries
+LOAD_STEPS = 150  # iterations after which the load is no longer raised in steps
+SMALLEST, BETWEEN = 1.0 / 128.0, 1e-5  # step of the load, and residual wanted on the way
+UNSTABLE = -1e-6  # lowest stiffness of the vessel over its own coordinates' below which an equilibrium is unstable
 RELAXED = 1e-3  # residual at which the soft system is near enough to its equilibrium
 
 
@@ -52,8 +55,8 @@ def equilibrium(
     loads : constant nodal loads of each line beyond its own forces, (N+1, 3) [N].
     tolerance : largest residual force as a share of the largest element tension; never asked below round-off.
 
-    Newton's iteration first; where it does not settle, a line search on soft lines, then Newton's again (S15).
-    Raises NotConverged with what is largest and where.
+    Newton's iteration first; where it does not settle, from a former equilibrium in steps of the load (S16), then by a
+    line search on soft lines (S15). Raises NotConverged with what is largest and where.
     """
     system = Assembly(lines, loads, body)
     start = Point([shape.copy() for shape in state.shapes], state.position.copy(), [])
@@ -61,24 +64,84 @@ def equilibrium(
     damping = 0.0 if state.tensions else FIRST_DAMPING
     tell = on_iteration or (lambda _iteration, _residual: None)
     found, point = newton(system, start, tolerance, min(ATTEMPT, max_iterations), damping, tell)
+    if found is None and state.tensions and body is not None:
+        found, point = by_load(system, _counted(start, point), tolerance, min(LOAD_STEPS, max_iterations), tell)
     if found is None:
-        point = replace(start, iterations=point.iterations, residual=point.residual, worst=point.worst)
+        weights = _strength(system, state.tensions)
+        found, point = by_stiffness(system, _counted(start, point), weights, tolerance, max_iterations, tell)
+    if found is None:
+        raise NotConverged(
+            "statics",
+            f"statics did not converge in {point.iterations} iterations: the largest residual is {point.residual:.2e} of "
+            f"the largest tension, at {point.worst} (wanted {tolerance:.0e}).",
+            "Check lengths and end points there, use shorter elements, a wider seabed transition, or more max_iterations.",
+        )
+    return _stable(system, found, tolerance, max_iterations, tell)
+
+
+def _counted(at: Point, after: Point) -> Point:
+    """A former point, with the iterations that were made since and where they ended."""
+    return replace(at, iterations=after.iterations, residual=after.residual, worst=after.worst)
+
+
+def by_load(
+    system: Assembly, start: Point, tolerance: float, most: int, tell: Callable[[int, float], None]
+) -> tuple[State | None, Point]:
+    """From the equilibrium of other loads, in steps of the difference between them and ours (S16)."""
+    nodal = system.nodal(start.shapes)
+    vessel = system.body_load(nodal, start.position)
+    reached, step, point = 0.0, 0.25, start
+    while step > SMALLEST and point.iterations < most:
+        share = min(reached + step, 1.0)
+        rest = 1.0 - share
+        loads = [load - rest * force for load, force in zip(system.loads, nodal, strict=True)]
+        # the ends' own forces stay with the vessel, whose part of the difference is `vessel`
+        for load, whole in zip(loads, system.loads, strict=True):
+            load[0], load[-1] = whole[0], whole[-1]
+        part = replace(system, loads=loads, extra=-rest * vessel)
+        wanted = tolerance if share == 1.0 else max(tolerance, BETWEEN)
+        found, after = newton(part, point, wanted, min(ATTEMPT, most - point.iterations), 0.0, tell)
+        if found is None:
+            step, point = 0.5 * step, _counted(point, after)
+            continue
+        if share == 1.0:
+            return found, after
+        reached, step, point = share, 2.0 * step, replace(after, mixed=found.tensions)
+    return None, point
+
+
+def by_stiffness(
+    system: Assembly, start: Point, weights: Sequence[float], tolerance: float, most: int,
+    tell: Callable[[int, float], None],
+) -> tuple[State | None, Point]:  # fmt: skip
+    """By a line search on soft lines, and Newton's iteration from its end, with ever stiffer lines (S15)."""
+    point = start
     for stretch in STRETCH:
-        left = max_iterations - point.iterations
-        if found is not None or left <= 0:
+        left = most - point.iterations
+        if left <= 0:
             break
-        near = relax(system, point, stretch, min(RELAX, left), tell)
-        found, point = newton(system, near, tolerance, min(ATTEMPT, max_iterations - near.iterations), 0.0, tell)
-        if found is None:  # the next search goes on from where this one ended
-            point = replace(near, iterations=point.iterations, residual=point.residual, worst=point.worst)
-    if found is not None:
+        near = relax(system, point, weights, stretch, min(RELAX, left), tell, RELAXED if stretch > 0.0 else BETWEEN)
+        found, after = newton(system, near, tolerance, min(ATTEMPT, most - near.iterations), NEXT_DAMPING, tell)
+        if found is not None:
+            return found, after
+        point = _counted(near, after)  # the next search goes on from where this one ended
+    return None, point
+
+
+def _stable(system: Assembly, found: State, tolerance: float, most: int, tell: Callable[[int, float], None]) -> State:
+    """A stable equilibrium beside one that is not, where there is one; else the one that was found."""
+    lowest, motion = system.weakest(found.shapes, found.position)
+    if lowest > UNSTABLE or system.body is None:
         return found
-    raise NotConverged(
-        "statics",
-        f"statics did not converge in {point.iterations} iterations: the largest residual is {point.residual:.2e} of the "
-        f"largest tension, at {point.worst} (wanted {tolerance:.0e}).",
-        "Check lengths and end points there, use shorter elements, a wider seabed transition, or more max_iterations.",
-    )
+    for sign in (1.0, -1.0):
+        nudge = Step(0.0, "", [], [np.zeros_like(shape[1:-1]) for shape in found.shapes], sign * motion, 0.0)
+        shapes, position = system.moved(found.shapes, found.position, nudge, 1.0)
+        start = Point(shapes, position, found.tensions, found.iterations)
+        near = relax(system, start, _strength(system, found.tensions), 0.0, RELAX, tell, BETWEEN)
+        other, _ = newton(system, near, tolerance, min(ATTEMPT, most), 0.0, tell)
+        if other is not None and system.weakest(other.shapes, other.position)[0] > UNSTABLE:
+            return other
+    return replace(found, unstable=True)
 
 
 def newton(
@@ -117,12 +180,15 @@ def _stalled(seen: Sequence[float]) -> bool:
     return len(seen) > 2 * PATIENCE and min(seen[-PATIENCE:]) > 0.1 * min(seen[:-PATIENCE])
 
 
-def relax(system: Assembly, start: Point, stretch: float, most: int, tell: Callable[[int, float], None]) -> Point:
+def relax(
+    system: Assembly, start: Point, weights: Sequence[float], stretch: float, most: int,
+    tell: Callable[[int, float], None], wanted: float = RELAXED,
+) -> Point:  # fmt: skip
     """Towards the equilibrium of softer lines, each step searched along its length (S14, S15).
 
-    stretch : strain that the weight of a line may give it; 0 leaves the lines as they are.
+    weights : W of each line [N]; stretch : strain that it may give the line; 0 leaves the lines as they are;
+    wanted : residual at which the search ends.
     """
-    weights = [_weight(line) for line in system.lines]
     if stretch > 0.0:
         system = system.with_arrays([
             _softer(line.arrays, weight / stretch) for line, weight in zip(system.lines, weights, strict=True)
@@ -134,7 +200,7 @@ def relax(system: Assembly, start: Point, stretch: float, most: int, tell: Calla
         step = system.step(point.shapes, point.position, mixed, [ease * size for size in sizes], ease)
         point = Point(point.shapes, point.position, mixed, point.iterations + 1, step.residual, step.worst)
         tell(point.iterations, step.residual)
-        if step.residual < RELAXED or not np.isfinite(step.size):
+        if step.residual < wanted or not np.isfinite(step.size):
             break
         work = system.work(step.nodal, point.position, step)
         if work <= 0.0:  # against the forces: a nearer step follows them
@@ -190,11 +256,15 @@ def _even_tension(system: Assembly, shapes: Sequence[Array]) -> list[Array]:
     ]
 
 
-def _weight(line: LineModel) -> float:
-    """Weight in water that a line may carry [N], sizes of segments added up."""
-    arrays = line.arrays
-    own = float(np.sum(np.abs(arrays.w_dry - arrays.b_wet)))
-    return max(own, float(np.sum(np.abs(arrays.point_weight - arrays.point_lift))), 1e-3 * float(np.sum(arrays.w_dry)))
+def _strength(system: Assembly, tensions: Sequence[Array]) -> list[float]:
+    """W of each line [N]: its weight in water, sizes added up, or its mean tension in a former equilibrium (S15)."""
+    out = []
+    for line in system.lines:
+        arrays = line.arrays
+        own = float(np.sum(np.abs(arrays.w_dry - arrays.b_wet)))
+        hung = float(np.sum(np.abs(arrays.point_weight - arrays.point_lift)))
+        out.append(max(own, hung, 1e-3 * float(np.sum(arrays.w_dry))))
+    return [max(weight, float(np.mean(tension))) for weight, tension in zip(out, tensions, strict=False)] or out
 
 
 def _linear_tension(line: LineModel, old: Array, new: Array) -> Array:

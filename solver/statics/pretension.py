@@ -44,8 +44,11 @@ def place(case: Case, line: LineModel, frame: float, tolerance: float, most: int
 
         fixed = line.length - 1000.0  # what the model holds for a length still to be found
         chord = float(np.linalg.norm(_point(line.end_b.point) - _point(line.end_a.point)))
-        low, high = max(0.9 * chord - fixed, 1e-3 * chord), 2.0 * chord + 2.0 * case.environment.depth
-        return _search(Search(line, with_length, low, high, -1.0, most), loc)
+        strain = line.wanted / float(line.arrays.EA.min())  # at most, where the line is straight
+        low = max(0.9 * chord / (1.0 + strain) - fixed, 1e-3 * chord)
+        across = _point(line.end_b.point) - _point(line.end_a.point)
+        way = float(np.hypot(*across[:2]) + abs(across[2]))  # straight down and along the bed: no more is pulled in
+        return _search(Search(line, with_length, low, max(1.001 * way - fixed, 1.1 * low), -1.0, most), loc)
     drop = float(_point(line.end_a.point if line.anchor_at_b else line.end_b.point)[2] + case.environment.depth)
     stretch = 1.0 + line.wanted * float((line.arrays.L / line.arrays.EA).sum()) / line.length
     if drop >= line.length * stretch:

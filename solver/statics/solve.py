@@ -125,6 +125,11 @@ def _lines_alone(
 
 def _warnings(model: Model, lines: Sequence[LineModel], state: State) -> tuple[str, ...]:
     found: list[str] = []
+    if state.unstable:
+        found.append(
+            "the vessel's static equilibrium is unstable: its stiffness with all lines and the slope of the mean drift has "
+            "a negative eigenvalue; give more yaw stiffness, another heading, or mean_drift: exclude"
+        )
     if model.vessel is not None:
         found += model.vessel.drift_warnings(model.wave_systems, float(state.position[5]))
     found += _balance(model, lines, state)

@@ -22,7 +22,7 @@ Array = np.ndarray
 def residuals(model: Model, static: StaticState) -> dict[str, float]:
     """Largest residuals as shares of what acts.
 
-    nodes : force on an inner node over the largest tension (round-off of positions taken off); vessel : force and
+    nodes : force on an inner node over the largest tension of all lines (round-off of positions taken off); vessel : force and
     moment / 30 m over the sum of line tensions and constant loads; fairleads : distance from node to fairlead [m].
     """
     case, position, tension, worst = model.case, static.state.position, [], 0.0
@@ -32,13 +32,13 @@ def residuals(model: Model, static: StaticState) -> dict[str, float]:
     for line, x in zip(static.lines, static.state.shapes, strict=True):
         F, T, bit = nodal_forces(case, model.frame, line, x)
         tension.append(float(np.abs(T).max()))
-        worst = max(worst, (float(np.abs(F[1:-1]).max()) - bit) / max(tension[-1], 1.0))
+        worst = max(worst, float(np.abs(F[1:-1]).max()) - bit)
         for end, node in ((line.end_a, 0), (line.end_b, -1)):
             if end.kind == "fairlead":
                 arm = turn.apply(end.arm)
                 apart = max(apart, float(np.abs(static.body.cg + position[:3] + arm - x[node]).max()))
                 loads += line.multiplicity * np.concatenate([F[node], np.cross(arm, F[node])])
-    out = {"nodes": worst, "fairleads": apart}
+    out = {"nodes": worst / max(*tension, 1.0), "fairleads": apart}
     if static.body is not None:
         out["vessel"] = _vessel(model, static, loads) / (sum(tension) + float(np.abs(static.body.constant[:3]).max()))
     return out

@@ -142,3 +142,21 @@ def test_pretension_is_set_in_still_water_and_the_current_adds_to_it() -> None:
     _, flowing = solved(current)
     np.testing.assert_allclose(flowing.lines[0].end_a.point, still.lines[0].end_a.point, rtol=1e-9)
     assert abs(_tension(flowing) - 4370e3) > 1e3
+
+
+@pytest.mark.parametrize(("chain", "depth"), [(800.0, 1500.0), (1500.0, 2500.0), (300.0, 700.0)])
+def test_a_pretension_below_the_averaged_line_s_weight_is_found(chain: float, depth: float) -> None:
+    """Wire above heavy chain: the tension hanging down is that of the wire, well below that of their mean."""
+    w = (70.0 - 1025 * np.pi * 0.12**2 / 4) * 9.80665
+    data = {
+        "slowdrift": 1, "name": "chain and wire", "environment": {"depth": depth},
+        "line_types": {"chain": {"diameter": 0.2, "mass": 300.0, "EA": 1e9},
+                       "wire": {"diameter": 0.12, "mass": 70.0, "EA": 8e8}},
+        "lines": {"line": {
+            "segments": [{"type": "chain", "length": chain, "elements": 20},
+                         {"type": "wire", "length": 1.5 * depth, "elements": 60}],
+            "end_a": {"anchor": {"azimuth": "20 deg", "pretension": 1.25 * w * depth}}, "end_b": {"pinned": [0, 0, 0]},
+        }}, "analyses": {"statics": {}},
+    }  # fmt: skip
+    _, static = solved(data)
+    assert _tension(static) == pytest.approx(1.25 * w * depth, rel=1e-8)

@@ -21,7 +21,12 @@ import numpy as np
 import yaml
 
 from solver.case import parse_case
+from solver.forces import axial
+from solver.model.build import build
+from solver.results.line_values import grounded_length
 from solver.run import run
+from solver.statics.catenary import solve_catenary
+from solver.statics.solve import solve_statics
 
 try:
     import moordyn
@@ -88,7 +93,111 @@ The paper's riser with its top moved by 10 m in 27 s in three directions, and in
 directions. "Digitised" is read off the published plots, within about 0.3 kN; MoorDyn: RK4, 0.5 ms. Range of the
 tension at the top end, kN.
 
-{riser_table()}"""
+{riser_table()}
+
+## Anchor, bed and slack lines
+
+### A chain that lies on the bed
+
+850 m of chain (0.3 m, 600 kg/m) between an anchor and a point 186 m above it and 772 m away, some 530 m of it on the
+bed. "Anchor": the largest difference between the reaction at the anchor and the force of the end element less half its
+weight. "Length": the largest difference of the length on the bed from the elastic catenary's. Both over the resting
+depths 0.2, 0.01 and 0.0001 m, and with the default transition, 0.005, 0.1 and 1 m.
+
+{bed_table()}
+
+The same chain at 1:70 has the same end forces and the same length on the bed, times the scale, within
+{100 * scale_difference():.2g} %.
+
+### Lines that go slack
+
+Chain of 890 m whose anchor lies 190 m nearer than it need (depth 300 m), and 400 m hanging from the surface to an
+anchor 300 m away at 100 m: no compression, so the top carries the weight of the chain that hangs.
+
+{slack_table()}"""
+
+
+def bed_table() -> str:
+    rows = []
+    for elements in (50, 170):
+        length = 850.0 / elements
+        found = [hung(resting, transition, elements) for resting in (0.2, 0.01, 1e-4) for transition in TRANSITIONS]
+        anchor, laid = (max(abs(one[k]) for one in found) for k in (0, 1))
+        rows.append([f"{elements} of {length:.3g} m", f"{anchor:.1e}", f"{laid:.1f}"])
+    return _table(("elements", "anchor, kN", "length, m"), rows)
+
+
+TRANSITIONS = (None, 0.005, 0.1, 1.0)
+
+
+def bed_case(soil: float, transition: float | None, elements: int, scale: float = 1.0) -> dict[str, Any]:
+    """The chain on the bed, lengths divided by `scale`, forces by its third power."""
+    seabed = {"soil": soil} | ({} if transition is None else {"transition": transition / scale})
+    return {
+        "slowdrift": 1, "name": "chain on the bed",
+        "environment": {"depth": 200.0 / scale, "water": {"density": 1025.0, "gravity": 9.80665}, "seabed": seabed},
+        "line_types": {"chain": {"diameter": 0.3 / scale, "mass": 600.0 / scale**2, "EA": 3e9 / scale**3}},
+        "lines": {"a": {"segments": [{"type": "chain", "length": 850.0 / scale, "elements": elements}],
+                        "end_a": {"anchor": {"point": [-830 / scale, 0]}},
+                        "end_b": {"pinned": [-58 / scale, 0, -14 / scale]}}},
+        "analyses": {"statics": {}},
+    }  # fmt: skip
+
+
+WEIGHT = (600.0 - 1025.0 * math.pi * 0.3**2 / 4) * 9.80665  # of the chain in water [N/m]
+
+
+def hung(resting: float, transition: float | None, elements: int) -> tuple[float, float]:
+    """Difference of the anchor's reaction from the end element's force [kN], and of the length on the bed [m]."""
+    model = build(parse_case(bed_case(WEIGHT / (0.3 * resting), transition, elements)), None)
+    static = solve_statics(model)
+    line, x = static.lines[0], static.state.shapes[0]
+    first = axial.tension(line.arrays, x)[0] * (x[1] - x[0]) / np.linalg.norm(x[1] - x[0])
+    wanted = first - [0.0, 0.0, 0.5 * WEIGHT * 850.0 / elements]
+    closed = solve_catenary(772.0, 186.0, 850.0, WEIGHT, 3e9, True)
+    assert closed is not None
+    reaction = float(np.abs(static.state.end_forces[0][3:] - wanted).max())
+    return 1e-3 * reaction, grounded_length(line, x) - closed.grounded
+
+
+def scale_difference() -> float:
+    """Largest difference between the chain at 1:1 and at 1:70, as a share."""
+    one, small = (
+        run(parse_case(bed_case(3e6, None, 50, scale)), None).summary["statics"]["lines"]["a"] for scale in (1.0, 70.0)
+    )
+    pairs = [(small[end]["tension"] * 70.0**3, one[end]["tension"]) for end in ("end_a", "end_b")]
+    pairs.append((small["grounded_length"] * 70.0, one["grounded_length"]))
+    return max(abs(found / wanted - 1) for found, wanted in pairs)
+
+
+def slack_table() -> str:
+    rows = []
+    for words, depth, length, elements, away, anchor in (
+        ("890 m, anchor on the bed", 300.0, 890.0, 40, 400.0, -300.0),
+        ("400 m, anchor above the bed", 100.0, 400.0, 200, 300.0, -100.0),
+    ):
+        data = span(length, away, anchor, depth, elements)
+        line = run(parse_case(data), None).summary["statics"]["lines"]["line"]
+        weight = 1e-3 * (data["line_types"]["chain"]["mass"] - 1025.0 * math.pi * 0.18**2 / 4) * 9.80665
+        forces = [1e-3 * value for value in line["end_b"]["force"]]
+        rows.append([
+            words, f"{line['end_b']['tension'] / 1e3:.1f}", f"{weight * depth:.1f}", f"{abs(forces[0]):.2f}",
+            f"{min(line['tension']) / 1e3:.2f}",
+        ])  # fmt: skip
+    head = ("chain", "top tension, kN", "weight × depth, kN", "horizontal force, kN", "least element, kN")
+    return _table(head, rows)
+
+
+def span(length: float, away: float, anchor: float, depth: float, elements: int) -> dict[str, Any]:
+    """A chain of 0.18 m from an anchor to the surface."""
+    return {
+        "slowdrift": 1, "name": "slack chain",
+        "environment": {"depth": depth, "water": {"density": 1025.0, "gravity": 9.80665}},
+        "line_types": {"chain": {"diameter": 0.18, "mass": 200.0, "EA": 8e8}},
+        "lines": {"line": {"segments": [{"type": "chain", "length": length, "elements": elements}],
+                           "end_a": {"pinned": [-away, 0, anchor]}, "end_b": {"pinned": [0, 0, 0]}}},
+        "analyses": {"statics": {}},
+    }  # fmt: skip
 
 
 def _table(head: tuple[str, ...], rows: list[list[str]]) -> str:

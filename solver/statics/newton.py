@@ -19,11 +19,12 @@ __all__ = ["State", "equilibrium", "vessel_coupling"]
 
 Array = np.ndarray
 ATTEMPT = 100  # iterations of one attempt of Newton's, at most
-PATIENCE = 10  # iterations in which its residual must fall to a tenth
+PATIENCE = 15  # iterations in which its residual must fall to a tenth
 NEAR = 0.02  # longest move, as a share of what is allowed, below which the matrix holds compression
 RELAX = 300  # iterations of the search with soft lines, at most
 STRETCH = (1.0 / 30.0, 1.0 / 1000.0, 0.0)  # strain under its own weight that a soft line may have, in turn
-FIRST_DAMPING, NEXT_DAMPING = 0.1, 0.01  # λ over T/L from a first shape, and from the end of a search
+FIRST_DAMPING = 0.1  # λ over T/L from a first shape
+NEXT_DAMPINGS = (0.01, 0.0)  # and from the end of a search, in turn: slack lines on a bed settle without
 OVERSHOOT, SHORTENINGS = 0.3, 20  # work against the forces at a step's end over that at its start, and tries
 LOAD_STEPS = 150  # iterations after which the load is no longer raised in steps
 SMALLEST, BETWEEN = 1.0 / 128.0, 1e-5  # step of the load, and residual wanted on the way
@@ -121,10 +122,12 @@ def by_stiffness(
         if left <= 0:
             break
         near = relax(system, point, weights, stretch, min(RELAX, left), tell, RELAXED if stretch > 0.0 else BETWEEN)
-        found, after = newton(system, near, tolerance, min(ATTEMPT, most - near.iterations), NEXT_DAMPING, tell)
-        if found is not None:
-            return found, after
-        point = _counted(near, after)  # the next search goes on from where this one ended
+        for damping in NEXT_DAMPINGS:
+            found, after = newton(system, near, tolerance, min(ATTEMPT, most - near.iterations), damping, tell)
+            if found is not None:
+                return found, after
+            near = _counted(near, after)
+        point = near  # the next search goes on from where this one ended
     return None, point
 
 

@@ -55,7 +55,9 @@ def test_histories_are_float32_and_all_else_float64_on_the_command_line(tmp_path
         file.visititems(note)
         assert file["time/line/riser/seed"].dtype == np.int64
         assert file["static/line/riser/axis"].asstr()[:].tolist() == ["x", "y", "z"]
-    assert kinds["float32"] == {f"time/line/riser/{end}_tension" for end in ("top", "end_a", "end_b")}
+    assert kinds["float32"] == {
+        f"time/line/riser/{what}" for what in ("top_tension", "end_a_tension", "end_b_tension", "anchor_vertical")
+    }
     assert {"static/line/riser/tension", "frequency/line/riser/tension_amplitude", "time/line/riser/time",
             "time/line/riser/tension_max"} <= kinds["float64"]  # fmt: skip
 

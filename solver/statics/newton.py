@@ -24,9 +24,9 @@ NEAR = 0.02  # longest move, as a share of what is allowed, below which the matr
 RELAX = 300  # iterations of the search with soft lines, at most
 STRETCH = (1.0 / 30.0, 1.0 / 1000.0, 0.0)  # strain under its own weight that a soft line may have, in turn
 FIRST_DAMPING = 0.1  # λ over T/L from a first shape
-NEXT_DAMPINGS = (0.01, 0.0)  # and from the end of a search, in turn: slack lines on a bed settle without
+NEXT_DAMPINGS = (0.0, 0.01)  # and from the end of a search, in turn: slack lines on a bed settle without
 OVERSHOOT, SHORTENINGS = 0.3, 20  # work against the forces at a step's end over that at its start, and tries
-LOAD_STEPS = 150  # iterations after which the load is no longer raised in steps
+LOAD_STEPS = 200  # iterations after which the load is no longer raised in steps
 SMALLEST, BETWEEN = 1.0 / 128.0, 1e-5  # step of the load, and residual wanted on the way
 UNSTABLE = -1e-6  # lowest stiffness of the vessel over its own coordinates' below which an equilibrium is unstable
 RELAXED = 1e-3  # residual at which the soft system is near enough to its equilibrium
@@ -122,12 +122,13 @@ def by_stiffness(
         if left <= 0:
             break
         near = relax(system, point, weights, stretch, min(RELAX, left), tell, RELAXED if stretch > 0.0 else BETWEEN)
+        after = near
         for damping in NEXT_DAMPINGS:
-            found, after = newton(system, near, tolerance, min(ATTEMPT, most - near.iterations), damping, tell)
+            left = min(ATTEMPT, most - after.iterations)
+            found, after = newton(system, _counted(near, after), tolerance, left, damping, tell)
             if found is not None:
                 return found, after
-            near = _counted(near, after)
-        point = near  # the next search goes on from where this one ended
+        point = _counted(near, after)  # the next search goes on from where this one ended
     return None, point
 
 

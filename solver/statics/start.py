@@ -22,6 +22,8 @@ def first_shape(line: LineModel, a: Array, b: Array) -> Array:
     arc = line.node_arc if low is a else line.length - line.node_arc
     stiffness = line.length / float((arrays.L / arrays.EA).sum())
     bed = bool(arrays.depth > low[2] - 1.0) and not flip
+    if bed and line.length > 0.9995 * (span + drop) and drop > 0.0:
+        return _straight_down(line, a, b, low is a)
     found = None
     if abs(weight) * line.length > 1e-6 * stiffness and span > 1e-3 * line.length:
         found = solve_catenary(span, drop, line.length, abs(weight), stiffness, bed)
@@ -33,6 +35,21 @@ def first_shape(line: LineModel, a: Array, b: Array) -> Array:
     along = (high - low) * [1.0, 1.0, 0.0] / span
     shape = low + x[:, None] * along
     shape[:, 2] = low[2] + sign * z
+    shape[0], shape[-1] = a, b
+    return np.ascontiguousarray(shape)
+
+
+def _straight_down(line: LineModel, a: Array, b: Array, from_a: bool) -> Array:
+    """A line longer than the way straight down and along the bed: it hangs from its upper end and lies evenly on the bed.
+
+    from_a : end a is the lower end.
+    """
+    low, high = (a, b) if from_a else (b, a)
+    arc = line.length - line.node_arc if from_a else line.node_arc  # from the upper end
+    drop = float(high[2] - low[2])
+    share = np.clip((arc - drop) / (line.length - drop), 0.0, 1.0)[:, None]
+    shape = high + share * (low - high)
+    shape[:, 2] = high[2] - np.minimum(arc, drop)
     shape[0], shape[-1] = a, b
     return np.ascontiguousarray(shape)
 

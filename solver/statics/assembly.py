@@ -48,7 +48,7 @@ class State:
 
     shapes : node positions of each line, (N+1, 3) [m]; position : vessel, (6,) [m, rad];
     end_forces : force of each line on its supports, end b then end a, (6,) [N]; tensions : of its elements (N,) [N], to
-    start with where the shapes are not yet in equilibrium; unstable : the vessel would leave this equilibrium.
+    start with where the shapes are not yet in equilibrium; unstable : the motion in which the vessel would leave it.
     """
 
     shapes: list[Array]
@@ -58,7 +58,7 @@ class State:
     residual: float = np.inf
     converged: bool = False
     tensions: list[Array] = field(default_factory=list)
-    unstable: bool = False
+    unstable: str = ""
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..case import DOF
 from ..kernels.line import LineArrays
 from ..model.line import LineModel
 from ..outcome import NotConverged
-from .assembly import Assembly, Body, State, Step, end_forces, vessel_coupling
+from .assembly import ARM, Assembly, Body, State, Step, end_forces, vessel_coupling
 
 __all__ = ["State", "equilibrium", "vessel_coupling"]
 
@@ -137,7 +138,8 @@ def _stable(system: Assembly, found: State, tolerance: float, most: int, tell: C
     lowest, motion = system.weakest(found.shapes, found.position)
     if lowest > UNSTABLE or system.body is None:
         return found
-    for sign in (1.0, -1.0):
+    dof = DOF[int(np.argmax(np.abs(motion) * np.repeat([1.0, ARM], 3)))]
+    for sign in (1.0, -1.0) if dof in ("surge", "sway", "yaw") else ():  # a hull that capsizes has none beside it
         nudge = Step(0.0, "", [], [np.zeros_like(shape[1:-1]) for shape in found.shapes], sign * motion, 0.0)
         shapes, position = system.moved(found.shapes, found.position, nudge, 1.0)
         start = Point(shapes, position, found.tensions, found.iterations)
@@ -145,7 +147,7 @@ def _stable(system: Assembly, found: State, tolerance: float, most: int, tell: C
         other, _ = newton(system, near, tolerance, min(ATTEMPT, most), 0.0, tell)
         if other is not None and system.weakest(other.shapes, other.position)[0] > UNSTABLE:
             return other
-    return replace(found, unstable=True)
+    return replace(found, unstable=dof)
 
 
 def newton(

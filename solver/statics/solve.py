@@ -127,8 +127,9 @@ def _warnings(model: Model, lines: Sequence[LineModel], state: State) -> tuple[s
     found: list[str] = []
     if state.unstable:
         found.append(
-            "the vessel's static equilibrium is unstable: its stiffness with all lines and the slope of the mean drift has "
-            "a negative eigenvalue; give more yaw stiffness, another heading, or mean_drift: exclude"
+            f"the vessel's static equilibrium is unstable in {state.unstable}: its stiffness with all lines and the slope of "
+            "the mean drift has a negative eigenvalue; check the centre of gravity and hydrostatics (roll, pitch, heave) or "
+            "give a stiffer mooring, another heading, or mean_drift: exclude (surge, sway, yaw)"
         )
     if model.vessel is not None:
         found += model.vessel.drift_warnings(model.wave_systems, float(state.position[5]))

@@ -79,3 +79,12 @@ def test_the_offset_grows_evenly_with_the_sea() -> None:
     surge = [float(_solved(_tanker(hs)).position[0]) for hs in (0.0125, 0.1, 0.3, 0.6)]
     gain = np.diff(surge) / np.diff(np.square([0.0125, 0.1, 0.3, 0.6]))
     np.testing.assert_allclose(gain, gain[0], rtol=0.05)
+
+
+@pytest.mark.parametrize(("height", "unstable"), [(1.0, False), (12.0, True)])
+def test_a_vessel_that_would_capsize_is_said_to_be_unstable(height: float, unstable: bool) -> None:
+    """A centre of gravity above the metacentre; the equilibrium itself is found all the same."""
+    data = _tanker(0.1)
+    data["vessel"]["hydrostatics"] = {"stiffness": np.diag([0, 0, 7e7, 1.5e10 - 2e9 * height, 1.5e11, 0]).tolist()}
+    warnings = _solved(data).warnings
+    assert any("unstable in roll" in text for text in warnings) == unstable

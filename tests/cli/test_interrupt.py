@@ -30,6 +30,11 @@ RISER = (ROOT / "examples" / "hanging-riser-case1.yaml").read_text()
 LONG = "time_domain: {step: 0.05 s, build_up: 0 s, duration: 200000 s, output_step: 10 s, seeds: 64}"
 
 
+def _heed_interrupts() -> None:
+    """In the child: SIGINT as a terminal's programs have it, also where the tests run in the background, without it."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 class Terminal:
     """A command whose errors and progress go to a terminal, as a person sees them."""
 
@@ -38,7 +43,7 @@ class Terminal:
         env = os.environ | {"PYTHONPATH": str(ROOT), "TERM": "xterm", "COLUMNS": "200"} | variables
         self.process = subprocess.Popen(
             command(*arguments), cwd=folder, env=env, stdin=other, stdout=subprocess.PIPE, stderr=other, text=True,
-            start_new_session=True,
+            start_new_session=True, preexec_fn=_heed_interrupts,
         )  # fmt: skip
         os.close(other)
         self.shown = ""
@@ -66,8 +71,9 @@ class Terminal:
         """Send SIGINT; the exit status, and the lines that stay on the terminal."""
         before = len(self.shown)
         self.process.send_signal(signal.SIGINT)
+        deadline = time.monotonic() + PATIENCE
         while self.read():
-            pass
+            assert time.monotonic() < deadline, f"still running after SIGINT:\n{self.shown}"
         status = self.process.wait(PATIENCE)
         assert self.process.stdout is not None
         assert self.process.stdout.read() == ""

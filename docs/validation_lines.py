@@ -174,7 +174,7 @@ def slack_table() -> str:
     rows = []
     for words, depth, length, elements, away, anchor in (
         ("890 m, anchor on the bed", 300.0, 890.0, 40, 400.0, -300.0),
-        ("400 m, anchor above the bed", 100.0, 400.0, 200, 300.0, -100.0),
+        ("400 m, as long as its way", 100.0, 400.0, 200, 300.0, -100.0),
     ):
         data = span(length, away, anchor, depth, elements)
         line = run(parse_case(data), None).summary["statics"]["lines"]["line"]

@@ -163,6 +163,7 @@ def test_the_draft_survives_a_reload(wide: Watch) -> None:
     page = wide.page
     text = steps.choose_example(page, FPSO)
     steps.write(page, text + "# my own words\n")
+    page.wait_for_function("() => Object.values(localStorage).some(kept => kept.includes('my own words'))")
     page.reload()
     expect(page.locator("#case-text")).to_have_value(re.compile("my own words"))
 

@@ -61,7 +61,7 @@ def together(source: Source) -> Record:
 def _pick(record: Record, index: list[int]) -> Record:
     return Record(
         [record.seeds[k] for k in index], record.vessel[:, index], record.tension[..., index], record.ends[..., index],
-        record.lowest[..., index], record.highest[..., index], record.slack[..., index],
+        record.lowest[..., index], record.highest[..., index], record.ends_range[..., index], record.slack[..., index],
     )  # fmt: skip
 
 

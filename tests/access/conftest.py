@@ -34,6 +34,7 @@ from store.scope import Scope
 from store.settings import Settings
 from store.tokens import KEY, SESSION, START, digest, new_token, read_secret
 from tests.api.conftest import fpso, migrated, riser  # noqa: F401  (fixtures)
+from tests.awaiting import awaited
 from tests.service import fake_solver
 from tests.service.conftest import create_database, drop_database
 from tests.service.running import a_case
@@ -114,7 +115,7 @@ class World:
             await self.app(scope, receive, send)
             return status[0]
 
-        return asyncio.run(ask()), ""
+        return awaited(ask()), ""
 
     def finish(self) -> None:
         """Do what stands in the queue, in this process."""

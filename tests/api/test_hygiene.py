@@ -20,6 +20,7 @@ from api.rates import Rates
 from store import logs
 from store.settings import Settings
 from tests.api.conftest import TestClient
+from tests.awaiting import awaited
 from tests.service.conftest import REDIS, need
 from tests.service.running import a_case
 
@@ -91,13 +92,13 @@ def test_processes_count_a_caller_together_in_redis(
     async def many() -> list[int]:
         return await asked(300, *(Rates(nothing, 60, url, prefix) for _ in range(2)))
 
-    assert sorted(asyncio.run(many())) == [200] * 60 + [429] * 240
-    assert asyncio.run(asked(1, Rates(nothing, 60, url, prefix + "x"))) == [200]  # another service's
+    assert sorted(awaited(many())) == [200] * 60 + [429] * 240
+    assert awaited(asked(1, Rates(nothing, 60, url, prefix + "x"))) == [200]  # another service's
     assert not caplog.text
 
 
 def test_without_its_redis_each_process_counts(caplog: pytest.LogCaptureFixture) -> None:
-    assert sorted(asyncio.run(asked(6, Rates(nothing, 5, "redis://127.0.0.1:1/0")))) == [200] * 5 + [429]
+    assert sorted(awaited(asked(6, Rates(nothing, 5, "redis://127.0.0.1:1/0")))) == [200] * 5 + [429]
     assert caplog.text.count("counted in this process only") == 1
 
 
@@ -127,7 +128,7 @@ def test_a_redis_that_does_not_answer_is_not_asked_by_everybody(monkeypatch: pyt
             await asked(20, rates)
             return [*counts, len(asks)]
 
-    first, meanwhile, later = asyncio.run(go())
+    first, meanwhile, later = awaited(go())
     assert first >= 1
     assert (meanwhile, later) == (first, first + 1)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import errno
 import shutil
@@ -23,6 +22,7 @@ from store import health, migrations
 from store.database import Database
 from store.health import Check, Health
 from store.settings import Settings
+from tests.awaiting import awaited
 from tests.service.conftest import RABBITMQ, REDIS, need
 from tests.service.running import free_port
 
@@ -45,7 +45,7 @@ def ask(checks: Health) -> tuple[str, dict[str, str], int, float]:
     request: Any = SimpleNamespace(app=SimpleNamespace(state=SimpleNamespace(health=checks)))
     response: Any = SimpleNamespace(status_code=0)
     began = time.monotonic()
-    answer = asyncio.run(readyz(request, response))
+    answer = awaited(readyz(request, response))
     return answer["status"], answer["checks"], response.status_code, time.monotonic() - began
 
 

@@ -47,9 +47,10 @@ def forward(A, b, first, last):  # type: ignore[no-untyped-def]
 def backward(A, b, first, last):  # type: ignore[no-untyped-def]
     """Finish the solution of rows last - 1 … first from those after them, which hold the answer already."""
     rows, Q = b.shape
-    for k in range(last - 1, first - 1, -1):
+    for k in range(first, last):
         for q in range(Q):
             b[k, q] *= A[k, 0, q]
-        for d in range(1, min(rows - 1 - k, BAND - 1) + 1):
+    for k in range(rows - 1, first, -1):
+        for d in range(max(1, k - last + 1), min(k - first, BAND - 1) + 1):
             for q in range(Q):
-                b[k, q] -= A[k + d, d, q] * b[k + d, q]
+                b[k - d, q] -= A[k, d, q] * b[k, q]

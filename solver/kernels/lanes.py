@@ -35,14 +35,35 @@ def elements(x, C, t, length):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
+def axial_force(C, length, j, q):  # type: ignore[no-untyped-def]
+    """Axial force of element j in lane q (L1, L17)."""
+    strain = length[j, q] / C[j, EL, q] - 1.0
+    return C[j, EA, q] * (strain + released(strain, C[j, LIMIT, q], C[j, KNEE, q])[0])
+
+
+@njit(cache=True, fastmath=FAST, error_model="numpy")
+def axial_forces(C, length, j, T):  # type: ignore[no-untyped-def]
+    """Axial force of element j in every lane into T (Q,) (L1, L17)."""
+    margin = 0.0
+    for q in range(T.shape[0]):
+        strain = length[j, q] / C[j, EL, q] - 1.0
+        T[q] = C[j, EA, q] * strain
+        margin = min(margin, strain + C[j, LIMIT, q])
+    if margin < 0.0:  # compressed beyond its limit in some lane
+        for q in range(T.shape[0]):
+            T[q] = axial_force(C, length, j, q)
+
+
+@njit(cache=True, fastmath=FAST, error_model="numpy")
 def inner_forces(x, C, t, length, out):  # type: ignore[no-untyped-def]
     """Axial and bending forces, dry weight and full buoyancy into out (P, 3, Q), which is overwritten (L1, L4, L17)."""
     N, Q = length.shape
     out[:] = 0.0
+    work = np.empty((2, Q))
     for j in range(N):
+        axial_forces(C, length, j, work[0])
         for q in range(Q):
-            strain = length[j, q] / C[j, EL, q] - 1.0
-            T = C[j, EA, q] * (strain + released(strain, C[j, LIMIT, q], C[j, KNEE, q])[0])
+            T = work[0, q]
             f0, f1, f2 = T * t[j, 0, q], T * t[j, 1, q], T * t[j, 2, q]
             half = 0.5 * (C[j, B_WET, q] - C[j, W_DRY, q])
             out[j, 0, q] += f0
@@ -52,35 +73,68 @@ def inner_forces(x, C, t, length, out):  # type: ignore[no-untyped-def]
             out[j + 1, 1, q] -= f1
             out[j + 1, 2, q] -= f2 - half
     for i in range(1, N):
+        _bending(C, t, length, i, work[0], work[1], out)
+
+
+@njit(cache=True, fastmath=FAST, error_model="numpy")
+def _bending(C, t, length, i, cosine, moment, out):  # type: ignore[no-untyped-def]
+    """Forces of the bent joint at node i (L4); cosine and moment are scratch (Q,)."""
+    Q = length.shape[1]
+    _joint_moments(C, t, i, cosine, moment)
+    for q in range(Q):
+        j0, j1, j2 = t[i - 1, 0, q], t[i - 1, 1, q], t[i - 1, 2, q]
+        k0, k1, k2 = t[i, 0, q], t[i, 1, q], t[i, 2, q]
+        c, p = cosine[q], moment[q]
+        a, b = p / length[i - 1, q], p / length[i, q]
+        m0, m1, m2 = a * (k0 - c * j0), a * (k1 - c * j1), a * (k2 - c * j2)
+        n0, n1, n2 = b * (j0 - c * k0), b * (j1 - c * k1), b * (j2 - c * k2)
+        out[i - 1, 0, q] -= m0
+        out[i - 1, 1, q] -= m1
+        out[i - 1, 2, q] -= m2
+        out[i + 1, 0, q] += n0
+        out[i + 1, 1, q] += n1
+        out[i + 1, 2, q] += n2
+        out[i, 0, q] += m0 - n0
+        out[i, 1, q] += m1 - n1
+        out[i, 2, q] += m2 - n2
+
+
+@njit(cache=True, fastmath=FAST, error_model="numpy")
+def _joint_moments(C, t, i, cosine, moment):  # type: ignore[no-untyped-def]
+    """Cosine of the angle at node i, and EI/l times the angle over its sine, of every lane (L4)."""
+    Q, largest = cosine.shape[0], 0.0
+    for q in range(Q):
+        j0, j1, j2 = t[i - 1, 0, q], t[i - 1, 1, q], t[i - 1, 2, q]
+        k0, k1, k2 = t[i, 0, q], t[i, 1, q], t[i, 2, q]
+        c = j0 * k0 + j1 * k1 + j2 * k2
+        s0, s1, s2 = j1 * k2 - j2 * k1, j2 * k0 - j0 * k2, j0 * k1 - j1 * k0
+        # 1 - c from the sine where the angle is small: no cancellation
+        z = (s0 * s0 + s1 * s1 + s2 * s2) / (1.0 + c) if c > 0.0 else 1.0 - c
+        cosine[q], moment[q] = c, z
+        largest = max(largest, z)
+    if largest < 0.02:
         for q in range(Q):
-            j0, j1, j2 = t[i - 1, 0, q], t[i - 1, 1, q], t[i - 1, 2, q]
-            k0, k1, k2 = t[i, 0, q], t[i, 1, q], t[i, 2, q]
-            c = j0 * k0 + j1 * k1 + j2 * k2
-            s0, s1, s2 = j1 * k2 - j2 * k1, j2 * k0 - j0 * k2, j0 * k1 - j1 * k0
-            # 1 - c from the sine where the angle is small: no cancellation
-            z = (s0 * s0 + s1 * s1 + s2 * s2) / (1.0 + c) if c > 0.0 else 1.0 - c
-            p = C[i, KB, q] * over_sine(z)
-            a, b = p / length[i - 1, q], p / length[i, q]
-            m0, m1, m2 = a * (k0 - c * j0), a * (k1 - c * j1), a * (k2 - c * j2)
-            n0, n1, n2 = b * (j0 - c * k0), b * (j1 - c * k1), b * (j2 - c * k2)
-            out[i - 1, 0, q] -= m0
-            out[i - 1, 1, q] -= m1
-            out[i - 1, 2, q] -= m2
-            out[i + 1, 0, q] += n0
-            out[i + 1, 1, q] += n1
-            out[i + 1, 2, q] += n2
-            out[i, 0, q] += m0 - n0
-            out[i, 1, q] += m1 - n1
-            out[i, 2, q] += m2 - n2
+            moment[q] = C[i, KB, q] * _series(moment[q], 7)
+    else:
+        for q in range(Q):
+            moment[q] = C[i, KB, q] * over_sine(moment[q])
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
 def over_sine(z):  # type: ignore[no-untyped-def]
-    """θ/sin θ from z = 1 - cos θ: the hypergeometric series of arccos, good to 2e-8 below 75 degrees."""
+    """θ/sin θ from z = 1 - cos θ: the hypergeometric series of arccos, good to 2e-8 below 75 degrees.
+
+    The first seven terms give it to rounding where z < 0.02 (11 degrees).
+    """
+    return _series(z, 16)
+
+
+@njit(cache=True, fastmath=FAST, error_model="numpy")
+def _series(z, terms):  # type: ignore[no-untyped-def]
     y = 0.5 * z
     value = 1.0
-    for n in range(16, 0, -1):
-        value = 1.0 + value * y * n / (n + 0.5)
+    for n in range(terms, 0, -1):
+        value = 1.0 + value * y * (n / (n + 0.5))
     return value
 
 

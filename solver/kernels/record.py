@@ -7,8 +7,7 @@ import math
 from numba import njit
 
 from .arrays import GROUNDED, TENSION_A, TENSION_B, TOUCHDOWN, VERTICAL_A, VERTICAL_B
-from .compression import released
-from .lanes import A1, A2, B_WET, BED, DIAMETER, EA, EL, FAST, KNEE, LIMIT, W_DRY, bed_force
+from .lanes import A1, A2, B_WET, BED, DIAMETER, EL, FAST, W_DRY, axial_force, bed_force
 from .step import residual
 from .waves import ramp, water_at, water_where
 
@@ -51,9 +50,7 @@ def write(setup, state, work, out, row):  # type: ignore[no-untyped-def]
     vessel[row] = state.s
     for j in range(N):
         for q in range(Q):
-            strain = work.length[j, q] / lines.C[j, EL, q] - 1.0
-            free, _ = released(strain, lines.C[j, LIMIT, q], lines.C[j, KNEE, q])
-            tension[row, j, q] = lines.C[j, EA, q] * (strain + free)
+            tension[row, j, q] = axial_force(lines.C, work.length, j, q)
     for q in range(Q):
         for e in range(2):
             i = end_node(lines, N, e, q)

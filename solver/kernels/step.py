@@ -241,17 +241,10 @@ def _finish(setup, state, work, time, h, moves, ends):  # type: ignore[no-untype
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
 def _integrate(state, work, h, inverse, moves, lines):  # type: ignore[no-untyped-def]
-    P, Q = work.xt.shape[0], work.xt.shape[2]
-    for i in range(P):
-        for p in range(3):
-            for q in range(Q):
-                go = moves[q] > 0.0
-                x, v, a = state.x[i, p, q], state.v[i, p, q], state.a[i, p, q]
-                da = (work.at[i, p, q] - a) * inverse
-                state.x[i, p, q] = x + h * (v + h * (0.5 * a + da / 6.0)) if go else x
-                state.v[i, p, q] = v + h * (a + 0.5 * da) if go else v
-                state.a[i, p, q] = a + da if go else a
-                state.da[i, p, q] = da if go else state.da[i, p, q]
+    if moves.min() > 0.0:
+        _integrate_all(state.x.ravel(), state.v.ravel(), state.a.ravel(), state.da.ravel(), work.at.ravel(), h, inverse)
+    else:
+        _integrate_some(state, work, h, inverse, moves)
     for seed in range(work.ds.shape[0]):
         if moves[seed * lines] > 0.0:
             for p in range(6):
@@ -260,3 +253,29 @@ def _integrate(state, work, h, inverse, moves, lines):  # type: ignore[no-untype
                 state.sv[seed, p] += h * (state.sa[seed, p] + 0.5 * da)
                 state.sa[seed, p] += da
                 state.sda[seed, p] = da
+
+
+@njit(cache=True, fastmath=FAST, error_model="numpy")
+def _integrate_all(x, v, a, da, at, h, inverse):  # type: ignore[no-untyped-def]
+    half, sixth = 0.5 * h * h, h * h / 6.0
+    for k in range(x.size):
+        change = (at[k] - a[k]) * inverse
+        x[k] += h * v[k] + half * a[k] + sixth * change
+        v[k] += h * a[k] + 0.5 * h * change
+        a[k] += change
+        da[k] = change
+
+
+@njit(cache=True, fastmath=FAST, error_model="numpy")
+def _integrate_some(state, work, h, inverse, moves):  # type: ignore[no-untyped-def]
+    half, sixth = 0.5 * h * h, h * h / 6.0
+    for i in range(work.xt.shape[0]):
+        for p in range(3):
+            for q in range(work.xt.shape[2]):
+                if moves[q] > 0.0:
+                    a = state.a[i, p, q]
+                    change = (work.at[i, p, q] - a) * inverse
+                    state.x[i, p, q] += h * state.v[i, p, q] + half * a + sixth * change
+                    state.v[i, p, q] += h * a + 0.5 * h * change
+                    state.a[i, p, q] = a + change
+                    state.da[i, p, q] = change

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import njit
 
 from .arrays import MEAN
-from .compression import released
-from .lanes import A1, A2, BED, EA, EL, FAST, KNEE, LIMIT
+from .lanes import A1, A2, BED, FAST, axial_force, axial_forces
 
 LOG2 = math.log(2.0)
+CLEAR = 350.0  # heights above the bed, in 1/A2, from which its hyperbola is left out
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
@@ -21,10 +22,11 @@ def watch_step(setup, state, work, watch):  # type: ignore[no-untyped-def]
     """
     C, Q = setup.lines.C, work.length.shape[1]
     extreme = _new_extreme(setup.lines, work, watch)
+    forces = np.empty(Q)
     for j in range(work.length.shape[0]):
+        axial_forces(C, work.length, j, forces)
         for q in range(Q):
-            strain = work.length[j, q] / C[j, EL, q] - 1.0
-            T = C[j, EA, q] * (strain + released(strain, C[j, LIMIT, q], C[j, KNEE, q])[0])
+            T = forces[q]
             watch.slack[j, q] += 1.0 if T <= 0.0 else 0.0
             one, two = watch.last[0, j, q], watch.last[1, j, q]
             kink = abs(T - 2.0 * one + two)
@@ -32,21 +34,37 @@ def watch_step(setup, state, work, watch):  # type: ignore[no-untyped-def]
             watch.range[1, j, q] = max(watch.range[1, j, q], T)
             watch.kink[j, q] = kink if kink > watch.kink[j, q] else watch.kink[j, q]  # at first not a number
             watch.last[0, j, q], watch.last[1, j, q] = T, one
-    D = setup.lines.D
     for i in range(state.x.shape[0]):
-        for q in range(Q):
-            # a hyperbola instead of (L13): the same at and below the bed within a few per cent, without its logarithm
-            wide = LOG2 / D[i, A2, q]
-            height = state.x[i, 2, q] - D[i, BED, q]
-            F = 0.5 * D[i, A1, q] * (math.sqrt(height * height + wide * wide) - height)
-            change = abs(F - watch.bed[2, i, q])
-            watch.bed[0, i, q] = min(watch.bed[0, i, q], F)
-            watch.bed[1, i, q] = max(watch.bed[1, i, q], F)
-            watch.bed[2, i, q] = F
-            watch.bed[3, i, q] = change if change > watch.bed[3, i, q] else watch.bed[3, i, q]
+        _watch_bed(setup.lines.D, state.x, i, watch.bed)
     if setup.sea.kind != MEAN:
         _reach(setup.sea, state, watch)
     return extreme
+
+
+@njit(cache=True, fastmath=FAST, error_model="numpy")
+def _watch_bed(D, x, i, bed):  # type: ignore[no-untyped-def]
+    """Take the force of the bed on node i into its extremes and its largest change in a step (T17).
+
+    A hyperbola instead of (L13): the same at and below the bed within a few per cent, without its logarithm; nothing
+    where it is less than 1e-3 of the force at bed level.
+    """
+    nearest = 1e300
+    for q in range(x.shape[2]):
+        nearest = min(nearest, D[i, A2, q] * (x[i, 2, q] - D[i, BED, q]))
+        if bed[2, i, q] != 0.0:  # at first not a number
+            nearest = 0.0
+    if nearest > CLEAR:
+        return
+    for q in range(x.shape[2]):
+        wide = LOG2 / D[i, A2, q]
+        height = x[i, 2, q] - D[i, BED, q]
+        F = 0.5 * D[i, A1, q] * (math.sqrt(height * height + wide * wide) - height)
+        F = F if D[i, A2, q] * height <= CLEAR else 0.0
+        change = abs(F - bed[2, i, q])
+        bed[0, i, q] = min(bed[0, i, q], F)
+        bed[1, i, q] = max(bed[1, i, q], F)
+        bed[2, i, q] = F
+        bed[3, i, q] = change if change > bed[3, i, q] else bed[3, i, q]
 
 
 @njit(cache=True)
@@ -55,8 +73,7 @@ def _new_extreme(lines, work, watch):  # type: ignore[no-untyped-def]
     N, Q = work.length.shape
     for q in range(Q):
         for j in (int(lines.bottom[q]), N - 1):
-            strain = work.length[j, q] / lines.C[j, EL, q] - 1.0
-            T = lines.C[j, EA, q] * (strain + released(strain, lines.C[j, LIMIT, q], lines.C[j, KNEE, q])[0])
+            T = axial_force(lines.C, work.length, j, q)
             lowest, highest = watch.range[0, j, q], watch.range[1, j, q]
             if not lowest <= T <= highest:
                 return True

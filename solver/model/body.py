@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -13,17 +14,28 @@ Array = np.ndarray
 
 
 def cross_matrix(r: Array) -> Array:
-    """The matrix of r × ."""
-    return np.array([[0.0, -r[2], r[1]], [r[2], 0.0, -r[0]], [-r[1], r[0], 0.0]])
+    """The matrix of r × of vectors (..., 3): (..., 3, 3)."""
+    r = np.asarray(r, dtype=float)
+    out = np.zeros((*r.shape, 3))
+    out[..., 2, 1], out[..., 0, 2], out[..., 1, 0] = r[..., 0], r[..., 1], r[..., 2]
+    return out - out.swapaxes(-1, -2)
 
 
 def rotation(vector: Array) -> Array:
-    """Rotation matrix of a rotation vector [rad] (Rodrigues)."""
-    angle = float(np.linalg.norm(vector))
-    S = cross_matrix(vector)
+    """Rotation matrix of a rotation vector [rad] (Rodrigues); read only."""
+    return _rotation(float(vector[0]), float(vector[1]), float(vector[2]))
+
+
+@lru_cache(maxsize=64)
+def _rotation(x: float, y: float, z: float) -> Array:
+    angle = math.hypot(x, y, z)
+    S = cross_matrix(np.array([x, y, z]))
     if angle < 1e-8:
-        return np.eye(3) + S + 0.5 * S @ S
-    return np.eye(3) + math.sin(angle) / angle * S + (1 - math.cos(angle)) / angle**2 * S @ S
+        R = np.eye(3) + S + 0.5 * S @ S
+    else:
+        R = np.eye(3) + math.sin(angle) / angle * S + (1 - math.cos(angle)) / angle**2 * S @ S
+    R.setflags(write=False)
+    return R
 
 
 def rotation_vector(R: Array) -> Array:
@@ -60,25 +72,29 @@ class VesselBody:
         return self.constant - self.stiffness(position) @ position
 
     def turned_arm(self, position: Array, arm: Array) -> Array:
-        """The arm from the CG to a fairlead, frame axes (3,) [m]."""
-        return rotation(position[3:]) @ arm if self.finite else arm
+        """Arms from the CG to fairleads (..., 3), in frame axes (..., 3) [m]."""
+        return arm @ rotation(position[3:]).T if self.finite else arm
 
     def fairlead(self, position: Array, arm: Array) -> Array:
-        """Fairlead in the solver's frame [m] (S7)."""
+        """Fairleads of arms (..., 3) in the solver's frame (..., 3) [m] (S7)."""
         if self.finite:
             return self.cg + position[:3] + self.turned_arm(position, arm)
         return self.cg + arm + self.arm_matrix(position, arm) @ position
 
     def arm_matrix(self, position: Array, arm: Array) -> Array:
-        """A of P = P0 + A s, (3, 6) (S7)."""
-        return np.hstack([np.eye(3), -cross_matrix(self.turned_arm(position, arm))])
+        """A of P = P0 + A s for arms (..., 3): (..., 3, 6) (S7)."""
+        out = np.zeros((*arm.shape, 6))
+        out[..., :3] = np.eye(3)
+        out[..., 3:] = -cross_matrix(self.turned_arm(position, arm))
+        return out
 
     def geometric(self, position: Array, arm: Array, force: Array) -> Array:
-        """K_g = (r·f) I - r fᵀ in the rotations, for the force f of the line on the vessel (S8)."""
-        out = np.zeros((6, 6))
+        """K_g = (r·f) I - r fᵀ in the rotations, for forces f (..., 3) of lines on the vessel: (..., 6, 6) (S8)."""
+        out = np.zeros((*arm.shape[:-1], 6, 6))
         if self.finite:
             r = self.turned_arm(position, arm)
-            out[3:, 3:] = float(r @ force) * np.eye(3) - np.outer(r, force)
+            product = np.sum(r * force, axis=-1)[..., None, None]
+            out[..., 3:, 3:] = product * np.eye(3) - r[..., :, None] * force[..., None, :]
         return out
 
     def moved(self, position: Array, step: Array) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
@@ -30,13 +31,13 @@ class Body(Protocol):
         """-∂load/∂position (6, 6)."""
 
     def arm_matrix(self, position: Array, arm: Array) -> Array:
-        """∂(fairlead)/∂position, (3, 6)."""
+        """∂(fairlead)/∂position of arms (..., 3): (..., 3, 6)."""
 
     def fairlead(self, position: Array, arm: Array) -> Array:
-        """Fairlead in the solver's frame (3,) [m]."""
+        """Fairleads in the solver's frame (..., 3) [m]."""
 
     def geometric(self, position: Array, arm: Array, force: Array) -> Array:
-        """K_g of one fairlead under the force of its line on the vessel, (6, 6)."""
+        """K_g of fairleads under the forces (..., 3) of their lines on the vessel, (..., 6, 6)."""
 
     def moved(self, position: Array, step: Array) -> Array:
         """The position after a step (6,)."""
@@ -94,7 +95,27 @@ class Assembly:
     loads: Sequence[Array]
     body: Body | None
     extra: Array = field(default_factory=lambda: np.zeros(6))
-    _known: dict[bytes, list[Array]] = field(default_factory=dict, compare=False)
+    _known: dict[bytes, Array] = field(default_factory=dict, compare=False)
+
+    @cached_property
+    def numbers(self) -> Array:
+        """How many real lines each line stands for (L,)."""
+        return np.array([line.multiplicity for line in self.lines], dtype=float)
+
+    @cached_property
+    def fairleads(self) -> tuple[Array, Array]:
+        """Arms of end b and end a of each line (L, 2, 3) [m], and which of these ends are on the vessel (L, 2)."""
+        arms, on_vessel = np.zeros((len(self.lines), 2, 3)), np.zeros((len(self.lines), 2), dtype=bool)
+        for index, line in enumerate(self.lines):
+            for row, end in enumerate(line.ends):
+                if self.body is not None and end.kind == "fairlead" and end.arm is not None:
+                    arms[index, row], on_vessel[index, row] = end.arm, True
+        return arms, on_vessel
+
+    @cached_property
+    def heaviest(self) -> float:
+        """Dry weight of the heaviest element, at least 1 N [N]."""
+        return max([1.0, *(float(np.max(line.arrays.w_dry)) for line in self.lines)])
 
     def with_arrays(self, arrays: Sequence[LineArrays]) -> Assembly:
         """The same system with other line constants."""
@@ -107,9 +128,7 @@ class Assembly:
 
     def scale(self, shapes: Sequence[Array]) -> float:
         """The force that residuals are compared with [N]: the largest tension, at least an element's weight."""
-        largest = [float(np.max(np.abs(tension))) for tension in self.tensions(shapes)]
-        weights = [float(np.max(line.arrays.w_dry)) for line in self.lines]
-        return max([*largest, *weights, 1.0])
+        return max([*(float(np.abs(tension).max()) for tension in self.tensions(shapes)), self.heaviest])
 
     def round_off(self, shapes: Sequence[Array]) -> float:
         """Force that the last bit of a node's position makes in the stiffest element [N]: no residual is asked below."""
@@ -119,15 +138,16 @@ class Assembly:
             largest = max(largest, 2.0 * bit * float(np.max(line.arrays.EA / line.arrays.L)))
         return largest
 
-    def couplings(self, position: Array) -> list[Array]:
-        """G of each line at a position of the vessel, (6, 6); zeros without a vessel (S7)."""
+    def couplings(self, position: Array) -> Array:
+        """G of all lines at a position of the vessel, (L, 6, 6); zeros without a vessel (S7)."""
         key = position.tobytes()
         if key not in self._known:
             self._known.clear()
-            self._known[key] = [
-                vessel_coupling(line, self.body, position) if self.body is not None else np.zeros((6, 6))
-                for line in self.lines
-            ]
+            G = np.zeros((len(self.lines), 6, 6))
+            if self.body is not None:
+                arms, on_vessel = self.fairleads
+                G[:] = (self.body.arm_matrix(position, arms) * on_vessel[..., None, None]).reshape(-1, 6, 6)
+            self._known[key] = G
         return self._known[key]
 
     def nodal(self, shapes: Sequence[Array]) -> list[Array]:
@@ -142,30 +162,38 @@ class Assembly:
         """r(s): all loads on the vessel (6,) [N, N m], zeros without one (S5)."""
         if self.body is None:
             return np.zeros(6)
-        load = self.body.load(position) + self.extra
-        for line, force, G in zip(self.lines, nodal, self.couplings(position), strict=True):
-            load = load + line.multiplicity * G.T @ end_forces(force)
-        return load
+        at_ends = np.array([end_forces(force) for force in nodal]).reshape(-1, 6)
+        pulls = np.einsum("l,lji,lj->i", self.numbers, self.couplings(position), at_ends)
+        return self.body.load(position) + self.extra + pulls
 
     def residual(self, nodal: Sequence[Array], position: Array) -> tuple[float, str]:
         """Largest residual force [N] and where it is (S5)."""
         worst, where = 0.0, "the vessel"
-        for line, force in zip(self.lines, nodal, strict=True):
-            if force.shape[0] > 2:
-                sizes = np.abs(force[1:-1]).max(axis=1)
-                index = int(np.argmax(sizes))
-                if not sizes[index] <= worst:
-                    worst, where = (
-                        float(sizes[index]),
-                        f"line {line.name!r}, {line.node_arc[index + 1]:.4g} m from end a",
-                    )
+        inner = np.abs(np.concatenate([np.zeros((0, 3)), *(force[1:-1] for force in nodal)])).max(axis=1, initial=0.0)
+        if inner.size:
+            at = int(np.argmax(inner))  # the first that is not a number, where there is one
+            worst, where = float(inner[at]), self._place(at)
         if self.body is not None:
             load = self.body_load(nodal, position)
-            count = max(sum(line.multiplicity for line in self.lines), 1)
-            size = float(max(np.abs(load[:3]).max(), np.abs(load[3:]).max() / ARM)) / count
+            size = float(max(np.abs(load[:3]).max(), np.abs(load[3:]).max() / ARM)) * self._largest_share(nodal)
             if not size <= worst:
                 worst, where = size, "the vessel"
         return worst, where
+
+    def _largest_share(self, nodal: Sequence[Array]) -> float:
+        """The largest force of a fairlead over the sum of all: as a share of the one, a load is a share of the sum."""
+        _, on_vessel = self.fairleads
+        sizes = np.linalg.norm(np.array([end_forces(force) for force in nodal]).reshape(-1, 2, 3), axis=2) * on_vessel
+        total = float(self.numbers @ sizes.sum(axis=1))
+        return float(sizes.max(initial=0.0)) / total if total > 0.0 else 1.0
+
+    def _place(self, at: int) -> str:
+        """The line and arc length of an inner node, counted through all lines."""
+        for line in self.lines:
+            if at < line.nodes - 2:
+                return f"line {line.name!r}, {line.node_arc[at + 1]:.4g} m from end a"
+            at -= line.nodes - 2
+        raise IndexError(at)
 
     def step(
         self,
@@ -191,8 +219,10 @@ class Assembly:
         residual, worst = self.residual(nodal, position)
         delta = self._body_step(solved, position, held)
         moves, size = [], float(np.abs(delta[3:]).max()) / MOST_TURN
-        for line, (_F, y, X, _Kc, _fc), G in zip(self.lines, solved, self.couplings(position), strict=True):
-            move = y - X @ (G @ delta)
+        for line, (_F, y, X, _Kc, _fc), at_ends in zip(
+            self.lines, solved, self.couplings(position) @ delta, strict=True
+        ):
+            move = y - X @ at_ends if self.body is not None else y
             moves.append(move.reshape(-1, 3))
             most = max(line.length / line.arrays.L.size, 0.02 * line.length)
             size = max(size, float(np.abs(move).max(initial=0.0)) / most)
@@ -218,15 +248,14 @@ class Assembly:
         """Stiffness (6, 6) and load (6,) of the vessel with all lines condensed onto it (S8)."""
         if self.body is None:
             return np.zeros((6, 6)), np.zeros(6)
-        J, r = self.body.stiffness(position), self.body.load(position) + self.extra
-        for line, (F, _y, _X, Kc, fc), G in zip(self.lines, solved, self.couplings(position), strict=True):
-            J = J + line.multiplicity * G.T @ Kc @ G
-            r = r + line.multiplicity * G.T @ fc
-            for row, end in enumerate(line.ends):
-                if end.kind == "fairlead" and end.arm is not None:
-                    force = end_forces(F)[3 * row : 3 * row + 3]
-                    J = J + line.multiplicity * self.body.geometric(position, end.arm, force)
-        return J, r
+        G, m = self.couplings(position), self.numbers
+        Kc = np.array([one[3] for one in solved]).reshape(-1, 6, 6)
+        fc = np.array([one[4] for one in solved]).reshape(-1, 6)
+        at_ends = np.array([end_forces(one[0]) for one in solved]).reshape(-1, 2, 3)
+        arms, on_vessel = self.fairleads
+        J = self.body.stiffness(position) + np.einsum("l,lij->ij", m, G.swapaxes(1, 2) @ Kc @ G)
+        J = J + np.einsum("l,le,leij->ij", m, on_vessel, self.body.geometric(position, arms, at_ends))
+        return J, self.body.load(position) + self.extra + np.einsum("l,lji,lj->i", m, G, fc)
 
     def weakest(self, shapes: Sequence[Array], position: Array) -> tuple[float, Array]:
         """Lowest eigenvalue of the vessel's stiffness, each coordinate over its own, and that motion (6,) [m, rad].
@@ -248,21 +277,21 @@ class Assembly:
     def moved(self, shapes: Sequence[Array], position: Array, step: Step, share: float) -> tuple[list[Array], Array]:
         """Shapes and vessel position after a share of a step."""
         place = self.body.moved(position, share * step.delta) if self.body is not None else position
-        out = []
-        for line, shape, move in zip(self.lines, shapes, step.moves, strict=True):
-            new = shape.copy()
+        out = [shape.copy() for shape in shapes]
+        for new, move in zip(out, step.moves, strict=True):
             new[1:-1] += share * move
-            for end, index in ((line.end_b, -1), (line.end_a, 0)):
-                if end.kind == "fairlead" and self.body is not None and end.arm is not None:
-                    new[index] = self.body.fairlead(place, end.arm)
-            out.append(new)
+        if self.body is not None:
+            arms, on_vessel = self.fairleads
+            points = self.body.fairlead(place, arms)
+            for index, row in np.argwhere(on_vessel):
+                out[index][-1 if row == 0 else 0] = points[index, row]
         return out, place
 
     def work(self, nodal: Sequence[Array], position: Array, step: Step) -> float:
         """Work that the residual forces do along a step [N m] (S14)."""
         total = float(self.body_load(nodal, position) @ step.delta)
-        for line, force, move in zip(self.lines, nodal, step.moves, strict=True):
-            total += line.multiplicity * float(np.sum(force[1:-1] * move))
+        for number, force, move in zip(self.numbers, nodal, step.moves, strict=True):
+            total += number * float(np.vdot(force[1:-1], move))
         return total
 
 

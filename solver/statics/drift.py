@@ -10,7 +10,7 @@ import numpy as np
 from ..model.body import VesselBody
 
 Array = np.ndarray
-TURN = 1e-4  # rad: difference that gives the slope of the drift force
+TURN = 1e-5  # rad: difference that gives the slope of the drift force
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class DriftingBody:
         """-∂load/∂position (6, 6): the drift force adds its slope over yaw (S11)."""
         yaw = float(position[5])
         K = self.still.stiffness(position).copy()
-        K[:, 5] -= (self.drift(yaw + TURN) - self.drift(yaw - TURN)) / (2.0 * TURN)
+        K[:, 5] -= (self.drift(yaw + TURN) - self.drift(yaw)) / TURN
         return K
 
     def arm_matrix(self, position: Array, arm: Array) -> Array:

@@ -23,6 +23,22 @@ Array = np.ndarray
 NEUTRAL = 1e-3  # weight in water over dry weight, below which a slack line is neutral
 
 
+def least_tension(line: LineModel, drop: float) -> float | None:
+    """A tension [N] that the upper end exceeds whatever the radius: the weight of what hangs above the bed (S17).
+
+    drop : height of the upper end above the bed [m]. None where a part of the line or an attachment floats.
+    """
+    arrays, wanted = line.arrays, float(line.wanted or 0.0)
+    weight, hung = arrays.w_dry - arrays.b_wet, arrays.point_weight - arrays.point_lift
+    if weight.min() < 0.0 or hung.min() < 0.0:
+        return None
+    lengths, order = arrays.L, slice(None) if line.anchor_at_b else slice(None, None, -1)
+    reach = drop / (1.0 + wanted / float(arrays.EA.min()))
+    arc = np.concatenate([[0.0], np.cumsum(lengths[order])])
+    share = np.clip((reach - arc[:-1]) / np.diff(arc), 0.0, 1.0)
+    return float(share @ weight[order] + hung[order][arc < reach].sum())
+
+
 def still_water(line: LineModel) -> LineModel:
     """The same line without current."""
     return replace(line, arrays=line.arrays._replace(current_v=np.zeros_like(line.arrays.current_v)))
@@ -55,6 +71,13 @@ def place(case: Case, line: LineModel, frame: float, tolerance: float, most: int
         raise CaseError(
             [FieldError(loc[:2], f"{line.length:g} m of line cannot reach the seabed {drop:g} m below its end")]
         )
+
+    least = least_tension(line, drop)
+    if least is not None and line.wanted < least:
+        raise CaseError([FieldError(
+            loc, f"{line.wanted:g} N is less than the weight of the line that hangs between its upper end and the bed, "
+            f"{drop:g} m below; allowed: more than {least:.5g} N", f"{line.wanted:g}",
+        )])  # fmt: skip
 
     def with_radius(radius: float) -> LineModel:
         return line.with_end(anchor_point(case, line, radius))

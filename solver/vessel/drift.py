@@ -50,7 +50,8 @@ class Drift:
 
     def __call__(self, omega_m: Array, omega_n: Array, direction_m: float, direction_n: float) -> Array:
         """T2 [N/m2, N m/m2], (..., 6), real unless `qtf`. Raises DataError outside the data."""
-        omega_m, omega_n = np.broadcast_arrays(np.asarray(omega_m, float), np.asarray(omega_n, float))
+        if omega_n is not omega_m:
+            omega_m, omega_n = np.broadcast_arrays(np.asarray(omega_m, float), np.asarray(omega_n, float))
         if self.kind == "none" or self.data is None:
             return np.zeros((*omega_m.shape, 6))
         if self.kind == "qtf":
@@ -58,6 +59,8 @@ class Drift:
                 lambda qtf, *headings: qtf.at(omega_m, omega_n, *headings, far=self.far), direction_m, direction_n
             )
         first = self.data.mean_drift_at(omega_m, direction_m - self.yaw, self.far)
+        if omega_n is omega_m and direction_n == direction_m:
+            return turned_force(first, self.yaw)
         second = self.data.mean_drift_at(omega_n, direction_n - self.yaw, self.far)
         if self.kind == "newman":
             return turned_force(0.5 * (first + second), self.yaw)

@@ -23,12 +23,12 @@ import numpy as np
 
 from solver.case import parse_case
 from solver.model.build import build
-from solver.outcome import SlowdriftError
+from solver.outcome import CaseError, SlowdriftError
 from solver.statics.assembly import Assembly
 from solver.statics.drift import DriftingBody
 from solver.statics.solve import solve_statics
 from solver.warm import warm_up
-from tests.statics.independent import residuals
+from tests.statics.independent import impossible, residuals
 from tests.sweep import KINDS, ScaledBarge, kind_of, system
 
 RESULTS = Path(__file__).parent / "results"
@@ -48,7 +48,9 @@ def measure(index: int, seed: int) -> Row:
     try:
         static = solve_statics(model)
     except SlowdriftError as failure:
-        return {**row, "seconds": round(time.process_time() - started, 3), "outcome": str(failure)}
+        none = isinstance(failure, CaseError) and impossible(data) is not None
+        outcome = f"no solution: {failure}" if none else str(failure)
+        return {**row, "seconds": round(time.process_time() - started, 3), "outcome": outcome}
     row["seconds"] = round(time.process_time() - started, 3)
     found = residuals(model, static)
     row |= {"iterations": static.state.iterations, "nodes": f"{found['nodes']:.1e}", "vessel": f"{found['vessel']:.1e}"}

@@ -44,6 +44,31 @@ def residuals(model: Model, static: StaticState) -> dict[str, float]:
     return out
 
 
+def impossible(data: dict[str, Any]) -> str | None:
+    """The line whose wanted pretension no radius of the anchor gives, proved from the plain case; None where there is none.
+
+    The elastic catenary with its anchor straight below the fairlead has the least tension there: the weight of what hangs
+    (docs/theory.md, S17). The stretch is taken at the wanted tension all along, which shortens what hangs.
+    """
+    water, depth = data["environment"]["water"], data["environment"]["depth"]
+    for name, line in data["lines"].items():
+        wanted = line["end_a"]["anchor"].get("pretension")
+        kinds = [data["line_types"][segment["type"]] for segment in line["segments"]]
+        area = [0.25 * np.pi * kind["diameter"] ** 2 for kind in kinds]
+        weight = [water["gravity"] * (kind["mass"] - water["density"] * A) for kind, A in zip(kinds, area, strict=True)]
+        floats = any(one["line"] == name for one in data["attachments"]) or min(weight) < 0.0
+        if wanted is None or floats or any(segment["length"] == "find" for segment in line["segments"]):
+            continue
+        left = (depth + line["end_b"]["fairlead"][2]) / (1.0 + wanted / min(kind["EA"] for kind in kinds))
+        hung = 0.0
+        for segment, w in zip(reversed(line["segments"]), reversed(weight), strict=True):
+            part = min(segment["length"], left)
+            hung, left = hung + w * part, left - part
+        if hung > wanted:
+            return str(name)
+    return None
+
+
 def _vessel(model: Model, static: StaticState, lines: Array) -> float:
     """Residual on the vessel [N]: constant loads, drift, lines, and hydrostatics turned with the yaw."""
     s = static.state.position

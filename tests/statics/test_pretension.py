@@ -160,3 +160,40 @@ def test_a_pretension_below_the_averaged_line_s_weight_is_found(chain: float, de
     }  # fmt: skip
     _, static = solved(data)
     assert _tension(static) == pytest.approx(1.25 * w * depth, rel=1e-8)
+
+
+@pytest.mark.parametrize("anchor_at", ["end_a", "end_b"])
+def test_the_least_pretension_is_the_weight_that_hangs(anchor_at: str) -> None:
+    """1990 m of wire at 150 kg/m hang: less is refused with that weight, a little more is had."""
+    data = _fpso_line()
+    line = data["lines"]["line"]
+    segments = [{**segment, "elements": 120} for segment in line["segments"]]
+    ends = {"end_a": line["end_a"], "end_b": line["end_b"]}
+    if anchor_at == "end_b":
+        ends = {"end_a": line["end_b"], "end_b": line["end_a"]}
+    line |= {"segments": segments, **ends}
+    w = (150.0 - 1025.0 * np.pi * 0.15**2 / 4) * 9.807
+    hung = w * 1990.0
+    line[anchor_at]["anchor"]["pretension"] = 0.99 * hung
+    with pytest.raises(
+        CaseError, match=r"is less than the weight of the line that hangs .* 1990 m below; allowed: more than"
+    ) as told:
+        solved(data)
+    said = float(str(told.value).split("more than ")[1].split(" N")[0])
+    assert said == pytest.approx(hung, rel=0.99 * hung / 1e9 + 1e-3)
+    line[anchor_at]["anchor"]["pretension"] = 1.05 * hung
+    _, static = solved(data)
+    assert _tension(static, 0 if anchor_at == "end_a" else 3) == pytest.approx(1.05 * hung, rel=1e-7)
+
+
+def test_a_line_with_a_buoy_has_no_least_pretension_of_its_weight() -> None:
+    """A float carries part of what hangs: what S17 says does not hold, and the pretension is had."""
+    data = _fpso_line()
+    line = data["lines"]["line"]
+    w = (150.0 - 1025.0 * np.pi * 0.15**2 / 4) * 9.807
+    lift = 0.4 * w * 1990.0
+    data["attachments"] = [{"line": "line", "arc_length": 2500.0, "volume": lift / (0.8 * 1025.0 * 9.807),
+                            "mass": 0.2 * lift / (0.8 * 9.807), "drag_area": 0.0}]  # fmt: skip
+    line["end_a"]["anchor"]["pretension"] = 0.9 * w * 1990.0
+    _, static = solved(data)
+    assert _tension(static) == pytest.approx(0.9 * w * 1990.0, rel=1e-7)

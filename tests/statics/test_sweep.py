@@ -7,8 +7,9 @@ import pytest
 
 from solver.case import parse_case
 from solver.model.build import build
+from solver.outcome import CaseError
 from solver.statics.solve import solve_statics
-from tests.statics.independent import nodal_forces, residuals
+from tests.statics.independent import impossible, nodal_forces, residuals
 from tests.sweep import KINDS, ScaledBarge, system
 
 QUICK = 12
@@ -38,6 +39,20 @@ def test_a_system_of_the_sweep_is_in_equilibrium(index: int) -> None:
 def test_more_systems_of_the_sweep_are_in_equilibrium(first: int) -> None:
     for index in range(first, min(first + BLOCK, 100)):
         _check(index)
+
+
+def test_a_pretension_below_the_weight_that_hangs_is_refused_with_that_weight() -> None:
+    """System 566 wants 5.53 MN at the top of a line of which 5.63 MN hang; the proof is written anew from the case."""
+    data = system(566)
+    assert impossible(data) == "m10"
+    with pytest.raises(
+        CaseError, match=r"lines\.m10\.end_a\.anchor\.pretension: 5\.52766e\+06 N .* more than 5\.628e\+06 N"
+    ):
+        solve_statics(build(parse_case(data), ScaledBarge(data)))
+
+
+def test_few_systems_of_the_sweep_have_no_solution() -> None:
+    assert [index for index in range(1000) if impossible(system(index))] == [566]
 
 
 def test_the_sweep_covers_its_ranges() -> None:

@@ -201,7 +201,23 @@ Surge damping goes from {surge[0]:.1f} to {surge[1]:.1f} % (paper: 31.1 to 30.4 
 The paper's yaw period exists only with `fairlead_kinematics: linear`: {mode(found, "yaw")["period"]:.1f} s. With
 `finite`, the pretension resists
 rotation and it is {mode(study.finite, "yaw")["period"]:.1f} s (check: about 87 s). A designer wants `finite`:
-`examples/fpso-2000m-design.yaml`."""
+`examples/fpso-2000m-design.yaml`.{_compression(study)}"""
+
+
+def _compression(study: Study) -> str:
+    if study.slack is None:
+        return ""
+    return f"""
+
+### Lines that carry no compression
+
+The example's wire says `compression: allowed`: the elements are springs that push as they pull, as the paper's are. By
+default an element carries its Euler load at most, 113 N for this wire (theory.md, L17). Time domain, the same seeds:
+
+{tables.compression_table(study.fpso.summary, study.slack.summary)}
+
+The frequency domain is the same for both: in statics no element is slack. A line that turns taut again pulls harder
+than one that had pushed instead, so the largest forces rise and the least one vanishes; σ hardly changes."""
 
 
 def _radiation(study: Study) -> str:

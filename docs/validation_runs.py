@@ -111,11 +111,11 @@ class Runner:
         return self.solve(label, data, FileSource(EXAMPLES)).summary
 
 
-@dataclass(frozen=True)
+@dataclass
 class Study:
     """Everything the page shows. riser : by case (1, 2) and amplitude factor; sweeps and scan by value.
 
-    finer : case 2 with finer settings (`FINER`).
+    finer : case 2 with finer settings (`FINER`); slack : the FPSO on lines that carry no compression.
     """
 
     riser: dict[tuple[int, float], Result]
@@ -127,6 +127,7 @@ class Study:
     finite: Summary
     side: dict[str, Pair] = field(default_factory=dict)
     finer: Result | None = None
+    slack: Result | None = None
 
 
 def example(name: str) -> Case:
@@ -159,6 +160,7 @@ def changed(
     coarse: bool = False,
     linearisation: str | None = None,
     at_most: int | None = None,
+    compression: str | None = None,
 ) -> Case:
     """A copy of the FPSO's data with what is named replaced. coarse : strips twice as wide."""
     data = copy.deepcopy(data)
@@ -175,6 +177,8 @@ def changed(
         data["vessel"]["hydrodynamics"] |= {"radiation": "constant", "frequency": frequency}
     if linearisation is not None:
         spec["linearisation"] = linearisation
+    if compression is not None:
+        data["line_types"]["wire"]["compression"] = compression
     if not low:
         spec["include_low_velocities"] = False
     if coarse:
@@ -207,6 +211,8 @@ def whole_study(runner: Runner, side: bool = True) -> Study:
         finer=runner.solve("riser, case 2, finer", finer),
     )
     if side:
+        none = changed(base, compression="none")
+        study.slack = runner.solve("FPSO without compression, all seeds", none, FileSource(EXAMPLES))
         for name, (label, changes, source) in SIDE.items():
             study.side[name] = runner.pair(label, runner.fpso(at_most=SIDE_SEEDS, **changes), source)
     return study

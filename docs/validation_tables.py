@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
 import numpy as np
 import validation_runs as runs
@@ -420,3 +421,35 @@ def waves_table(base: Pair, waves: Pair) -> str:
         "over time domain",
     )
     return table(head, rows)
+
+
+def compression_table(allowed: Summary, none: Summary) -> str:
+    """The time domain of lines that may push beside that of lines that may not, the largest of the four lines."""
+
+    def worst(summary: Summary, value: Callable[[dict[str, Any]], float]) -> float:
+        return max(value(line) for line in summary["time_domain"]["lines"].values())
+
+    def row(label: str, find: Callable[[Summary], float], digits: int) -> tuple[str, str, str, str]:
+        with_push, without = find(allowed), find(none)
+        change = (
+            f"{100 * (without / with_push - 1):+.1f} %" if abs(with_push) > 1e-9 and without * with_push > 0 else "-"
+        )
+        return label, f"{with_push:.{digits}f}", f"{without:.{digits}f}", change
+
+    def motion(dof: str) -> Callable[[Summary], float]:
+        return lambda summary: sigma(summary["time_domain"]["vessel_std"]["lf"][dof], dof)
+
+    def top(band: str) -> Callable[[Summary], float]:
+        return lambda summary: 1e-3 * worst(summary, lambda line: line["tension_std"][band][-1])
+
+    rows = [
+        row("least axial force, kN", lambda s: -1e-3 * worst(s, lambda line: -min(line["tension_min"])), 1),
+        row("longest share of time slack, %", lambda s: 100 * worst(s, lambda line: line["slack"]["share"]), 2),
+        row("largest force at the top, mean of the seeds, kN",
+            lambda s: 1e-3 * worst(s, lambda line: float(np.mean(line["end_b_max_per_seed"]))), 0),
+        row("the same, largest of the seeds, kN", lambda s: 1e-3 * worst(s, lambda line: line["end_b_tension"]["max"]), 0),
+        row("σ at the top, WF, kN", top("wf"), 1), row("σ at the top, LF, kN", top("lf"), 1),
+        row("σ of LF surge, m", motion("surge"), 3), row("σ of LF sway, m", motion("sway"), 3),
+        row("σ of LF yaw, °", motion("yaw"), 3),
+    ]  # fmt: skip
+    return table(("of the four lines the worst", "`allowed`", "`none`", "change"), rows)

@@ -28,6 +28,8 @@ from store.models import STATES
 from store.priority import name_of
 from store.repositories import QueueRepository
 
+from .streams import Streams
+
 WINDOW = timedelta(minutes=10)
 """Runs that ended longer ago than this before a scrape are not seen by the histogram of run times."""
 METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")
@@ -141,10 +143,10 @@ class _Rows(Collector):
 
 
 class ServiceState(Collector):
-    """Gauges of this process: what its health checks said last, and its dispatcher."""
+    """Gauges of this process: what its health checks said last, its dispatcher, and its event streams."""
 
-    def __init__(self, health: Health, doorbell: Doorbell):
-        self._health, self._doorbell = health, doorbell
+    def __init__(self, health: Health, doorbell: Doorbell, streams: Streams):
+        self._health, self._doorbell, self._streams = health, doorbell, streams
 
     def describe(self) -> list[Metric]:
         return []
@@ -161,6 +163,11 @@ class ServiceState(Collector):
         yield GaugeMetricFamily("slowdrift_dispatcher_waiting", "Messages that wait to be sent", bell.waiting)
         yield CounterMetricFamily("slowdrift_dispatcher_sent", "Messages that the broker took", bell.sent)
         yield CounterMetricFamily("slowdrift_dispatcher_failed", "Messages that it did not take", bell.failed)
+        yield GaugeMetricFamily("slowdrift_streams_open", "Event streams", self._streams.open)
+        yield GaugeMetricFamily("slowdrift_streams_limit", "Event streams of this process at most", self._streams.most)
+        yield CounterMetricFamily(
+            "slowdrift_streams_refused", "Event streams refused by a limit", self._streams.refused
+        )
 
 
 class Meter:

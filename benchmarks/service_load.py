@@ -72,11 +72,12 @@ def bare() -> float:
 
 
 @contextlib.contextmanager
-def started(kind: str, *options: str, accounts: int = 0) -> Iterator[httpx.Client]:
-    """The service, and a client of its first member; the keys of all are in the environment of children."""
+def started(kind: str, *options: str, accounts: int = 0, **values: object) -> Iterator[httpx.Client]:
+    """The service, and a client of its first member; the keys of all are in the environment of children. values: of
+    its settings."""
     name = f"sd_load_{uuid.uuid4().hex[:10]}"
     with tempfile.TemporaryDirectory(prefix="sd-load-", ignore_cleanup_errors=True) as folder:
-        given: dict[str, object] = {"data_dir": Path(folder), "queue_prefix": name}
+        given: dict[str, object] = {"data_dir": Path(folder), "queue_prefix": name} | values
         if kind != "embedded":
             given["database_url"] = create_database(name)
             given["broker_url"] = REDIS if kind == "postgres-redis" else RABBITMQ

@@ -46,10 +46,12 @@ def run_api(options: argparse.Namespace) -> int:
     sys.setswitchinterval(TURN)
     gc.disable()
     settings = Settings.from_env()
+    most = max(10, min(settings.max_connections, raise_open_files() - OTHER_FILES))
+    settings = settings.model_copy(update={"max_connections": most})
     configure(settings.log_level, settings.log_json)
     app = compose_app(settings, options.port, pages=not options.no_pages, first=not options.beside)
     connections = Connections(
-        most=max(10, min(settings.max_connections, raise_open_files() - OTHER_FILES)),
+        most=most,
         most_per_address=settings.max_connections_per_address,
         trusted=trusted_by(os.environ.get("FORWARDED_ALLOW_IPS", "")),
     )

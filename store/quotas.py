@@ -15,6 +15,7 @@ from .scope import Scope
 from .settings import Settings
 
 CHANGE = "Whoever runs the service can change it (SLOWDRIFT_{setting})."
+STREAMS = "event streams"
 REMEDIES = {
     "queued runs": "wait until some have ended, or cancel some",
     "stored runs": "delete some",

@@ -26,8 +26,8 @@ from store.scope import Scope
 
 from .services.runs import info
 
-SECONDS = 0.25
-"""Between two looks."""
+SECONDS, PROJECTS_EVERY = 0.25, 2
+"""Between two looks; projects are looked at in each second one."""
 SHARE, LONGEST = 4.0, 5.0
 """A look and telling everybody may take one part in SHARE + 1 of the time: after long ones the next is later, at most
 LONGEST seconds."""
@@ -96,8 +96,8 @@ class _Followed:
 
     scope: Scope
     listeners: set[Listener] = field(default_factory=set)
-    members: tuple[str, ...] = ()
-    """Of a project: the runs of the last look."""
+    told: dict[str, bytes] = field(default_factory=dict)
+    """Of a project: the runs of the last look, as its listeners know them."""
     looked: bool = False
 
 
@@ -164,8 +164,7 @@ class Watcher:
         followed = self._projects.setdefault(key, _Followed(scope))
         listener = Listener()
         if followed.looked:  # what the others know already, who get the changes from here on too
-            seen = {run_id: self._seen[run_id, False] for run_id in followed.members}
-            first = {run_id: each.event for run_id, each in seen.items() if each.state in ACTIVE}
+            first = {each: text for each, text in followed.told.items() if self._seen[each, False].state in ACTIVE}
             if first:
                 listener.offer(first)
         followed.listeners.add(listener)
@@ -214,14 +213,16 @@ class Watcher:
         self._number += 1
         joined, self._joined = self._joined, set()
         runs = {key: each.scope for key, each in self._runs.items()}
-        projects = {key: (each.scope, each.members) for key, each in self._projects.items()}
+        turn = self._number % PROJECTS_EVERY == 0
+        due = {key: each for key, each in self._projects.items() if turn or not each.looked}
+        projects = {key: (each.scope, tuple(each.told)) for key, each in due.items()}
         now = time.monotonic()
         estimate = now - self._estimated_at > 1.0
         self._estimated_at = now if estimate else self._estimated_at
         return _Plan(runs, projects, self._seen, estimate, joined)
 
     async def _tell(self, found: _Look) -> None:
-        before, self._seen = self._seen, self._seen | found.read
+        self._seen = self._seen | found.read
         told = 0
         for key in [*found.read, *found.gone]:
             followed = self._runs.get(key)
@@ -233,12 +234,11 @@ class Watcher:
             followed = self._projects.get(project)
             if followed is None:
                 continue
-            events = self._changes(followed, members, before)
-            followed.members, followed.looked = members, True
+            events = self._changes(followed, members)
             for listener in list(followed.listeners) if events else ():
                 listener.offer(events)
                 told = await _turn(told)
-        wanted = set(self._runs) | {(each, False) for followed in self._projects.values() for each in followed.members}
+        wanted = set(self._runs) | {(each, False) for followed in self._projects.values() for each in followed.told}
         self._seen = {key: seen for key, seen in self._seen.items() if key in wanted}
 
     def _tell_of_run(self, listener: Listener, key: Key, gone: bool) -> None:
@@ -252,14 +252,14 @@ class Watcher:
             listener.end()
         return None
 
-    def _changes(self, followed: _Followed, members: Sequence[str], before: dict[Key, Seen]) -> dict[str, bytes]:
+    def _changes(self, followed: _Followed, members: Sequence[str]) -> dict[str, bytes]:
         """Of a project whose runs are `members` now: the active ones at the first look, then what changed."""
-        events, known = {}, set(followed.members)
-        for run_id in members:
-            seen, old = self._seen[run_id, False], before.get((run_id, False))
-            new = run_id not in known or old is None or old.event != seen.event
-            if new if followed.looked else seen.state in ACTIVE:
-                events[run_id] = seen.event
+        now = {run_id: self._seen[run_id, False].event for run_id in members}
+        if followed.looked:
+            events = {run_id: text for run_id, text in now.items() if followed.told.get(run_id) != text}
+        else:
+            events = {run_id: text for run_id, text in now.items() if self._seen[run_id, False].state in ACTIVE}
+        followed.told, followed.looked = now, True
         return events
 
 

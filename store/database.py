@@ -68,18 +68,18 @@ def make_engine(url: str) -> Engine:
     if parsed.get_backend_name() == "sqlite":
         if parsed.database and parsed.database != ":memory:":
             Path(parsed.database).parent.mkdir(parents=True, exist_ok=True)
-        engine = create_engine(parsed, connect_args={"timeout": BUSY_SECONDS}, json_deserializer=_read_json)
+        engine = create_engine(parsed, connect_args={"timeout": BUSY_SECONDS}, json_deserializer=from_text)
         event.listen(engine, "connect", _sqlite_connect)
         event.listen(engine, "begin", _sqlite_begin)
         return engine
     engine = create_engine(
-        parsed, pool_size=10, max_overflow=30, connect_args={"connect_timeout": 5}, json_deserializer=_read_json
+        parsed, pool_size=10, max_overflow=30, connect_args={"connect_timeout": 5}, json_deserializer=from_text
     )
     _ask_idle(engine)
     return engine
 
 
-def _read_json(text: str | bytes) -> Any:
+def from_text(text: str | bytes) -> Any:
     """In a third of the standard library's time, which still takes what this one does not (half a surrogate pair)."""
     try:
         return from_json(text)

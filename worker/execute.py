@@ -24,6 +24,7 @@ from store.database import Database
 from store.effective import solver_version, stored_case
 from store.errors import LostLeaseError
 from store.estimate import snapshot
+from store.figures import figures_text
 from store.logs import about
 from store.models import FAILED, SUCCEEDED
 from store.repositories import ChannelRepository, TaskRepository
@@ -195,14 +196,16 @@ def conclude(result: Result, job: Job) -> Outcome:
         name: FAILED if name in failures else SUCCEEDED if name in result.summary else "skipped"
         for name in job.analyses
     }
-    reason = " ".join(f"{name}: {text}" for name, text in failures.items()) or None
+    reason = " ".join(f"{name}: {words}" for name, words in failures.items()) or None
+    text = to_json(result.summary)
     return Outcome(
         state=FAILED if failures else SUCCEEDED,
         reason=reason,
         outcomes=outcomes,
-        summary=to_json(result.summary),
+        summary=text,
         warnings=tuple(str(text) for text in result.summary.get("warnings", ())),
         solver_version=str(result.summary.get("provenance", {}).get("solver_version") or solver_version() or "unknown"),
+        figures=figures_text(json.loads(text)),
     )
 
 

@@ -62,6 +62,8 @@ class Outcome:
     summary: str
     warnings: tuple[str, ...]
     solver_version: str | None
+    figures: str | None = None
+    """Of the summary, what tables show (store/figures.py)."""
 
 
 class TaskRepository:
@@ -194,7 +196,7 @@ class TaskRepository:
         self._fenced(ticket, ended)
         self.session.execute(update(Task).where(Task.run_id == run.id).values(part=None, checkpoint=None))
         run.state, run.reason, run.outcomes = outcome.state, outcome.reason, outcome.outcomes
-        run.summary, run.solver_version = outcome.summary, outcome.solver_version
+        run.summary, run.figures, run.solver_version = outcome.summary, outcome.figures, outcome.solver_version
         run.warnings = list(dict.fromkeys([*run.warnings, *outcome.warnings]))
         run.finished_at = utc_now()
         return True

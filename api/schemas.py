@@ -187,7 +187,7 @@ class RunInfo(BaseModel):
 class RunPage(BaseModel):
     items: list[RunInfo]
     next_cursor: str | None
-    total: int
+    total: int | None = Field(None, description="how many there are in all, where `total=true` asks for it")
 
 
 class AxisInfo(BaseModel):

@@ -204,7 +204,7 @@ class RunPage(BaseModel):
     )
     items: list[RunInfo]
     next_cursor: str | None
-    total: int
+    total: int | None = None
 
 
 class StudyInfo(BaseModel):

@@ -152,6 +152,8 @@ class Study(Base):
 
 _IS_ACTIVE = text("state IN ('queued', 'running', 'cancelling')")
 ACTIVE_RUNS = Index("ix_runs_active", "project_id", "id", postgresql_where=_IS_ACTIVE, sqlite_where=_IS_ACTIVE)
+_IS_JOB = text("kind = 'hydrodynamics'")
+JOBS = Index("ix_runs_jobs", "project_id", "id", postgresql_where=_IS_JOB, sqlite_where=_IS_JOB)
 _IS_TIMED = text("state = 'succeeded' AND seconds IS NOT NULL")
 TIMED_TASKS = Index("ix_tasks_timed", "queue", "id", postgresql_where=_IS_TIMED, sqlite_where=_IS_TIMED)
 
@@ -171,6 +173,7 @@ class Run(Base):
         Index("ix_runs_state", "state"),
         Index("ix_runs_starter", "project_id", "created_by", "id"),
         ACTIVE_RUNS,
+        JOBS,
     )
     id: Mapped[str] = mapped_column(Id, primary_key=True, default=new_id)
     project_id: Mapped[str] = mapped_column(Id, ForeignKey("projects.id"))

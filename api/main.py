@@ -26,6 +26,7 @@ from .etag import ETags
 from .guard import COOKIE, Guard
 from .metrics import Meter, Metrics, ServiceState
 from .rates import Rates
+from .refusals import Refusals
 from .routes import (
     auth,
     cases,
@@ -104,6 +105,7 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
     )
     app.state.context = context
     app.state.health = checks
+    app.state.refusals = Refusals()
     app.state.streams, app.state.watcher = streams, Watcher(context.database)
     app.state.attempts = Attempts(settings)
     errors.install(app)

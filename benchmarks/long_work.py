@@ -51,7 +51,7 @@ def wamit() -> bytes:
 
 
 def upload_wamit(client: httpx.Client) -> None:
-    form = {"length": "1", "values": "nondimensional", "density": "1025", "gravity": "9.80665", "depth": "infinite"}
+    form = {"length": "1", "values": "nondimensional", "density": "1025", "gravity": "9.80665", "depth": "2000"}
     files = {"file": ("large.1", wamit())}
     answer = client.post("/api/v1/data-sets", files=files, data=form, timeout=600)
     assert answer.status_code < 500 or answer.status_code == 503, answer.text[:300]

@@ -84,6 +84,8 @@ class Settings(BaseModel):
     """Of them of one user, or of one address behind share links; 0: any number."""
     quota_streams: int = Field(1000, ge=0)
     """Of them of one team; 0: any number."""
+    quota_running_runs: int = Field(0, ge=0)
+    """Runs of one team that may be at work at a time, the others wait; 0: any number."""
     quota_queued_runs: int = Field(20_000, ge=0)
     """Runs of one team that may wait; 0: any number."""
     quota_stored_runs: int = Field(200_000, ge=0)

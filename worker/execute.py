@@ -83,8 +83,9 @@ def execute(worker: Worker, task_id: str) -> str:
 def execute_next(worker: Worker, queue: str, up_to: int | None = None) -> tuple[str, str] | None:
     """Do the most urgent task of the queue; id and word. None when nothing waits (of priority number `up_to`)."""
     with worker.database.write() as session:
+        settings = worker.settings
         ticket = TaskRepository(session).claim_next(
-            queue, worker.name, worker.settings.lease_seconds, worker.settings.max_attempts, up_to
+            queue, worker.name, settings.lease_seconds, settings.max_attempts, up_to, settings.quota_running_runs
         )
     return None if ticket is None else (ticket.task_id, _kept(worker, ticket))
 

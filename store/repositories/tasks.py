@@ -18,7 +18,7 @@ from solver.results.part import Chunk
 from ..broker import RUNS
 from ..clock import clock, utc_now
 from ..errors import LostLeaseError
-from ..models import CANCELLED, CANCELLING, FAILED, QUEUED, RUNNING, SUCCEEDED, CaseVersion, DataSet, Run, Task
+from ..models import CANCELLED, CANCELLING, FAILED, QUEUED, RUNNING, SUCCEEDED, CaseVersion, DataSet, Project, Run, Task
 from ..sources import PinnedSource
 
 NEXT_TRIES = 5
@@ -78,11 +78,22 @@ class TaskRepository:
         return None if run is None else self._take(run, task_id, worker, lease, max_attempts)
 
     def claim_next(
-        self, queue: str, worker: str, lease: float, max_attempts: int, up_to: int | None = None
+        self,
+        queue: str,
+        worker: str,
+        lease: float,
+        max_attempts: int,
+        up_to: int | None = None,
+        most_running: int = 0,
     ) -> Ticket | None:
-        """The most urgent queued task, of equals that of the smallest turn; with `up_to`, none of a larger priority number."""
+        """The most urgent queued task, of equals that of the smallest turn; with `up_to`, none of a larger priority number.
+
+        most_running : a team with so many runs at work has no other begun (0: any number). Two workers that look at the
+        same time may begin one more each.
+        """
+        full = self._full(most_running) if most_running else []
         for _ in range(NEXT_TRIES):
-            found = self._most_urgent(queue, up_to, skip_locked=True) or self._most_urgent(queue, up_to)
+            found = self._most_urgent(queue, up_to, full, skip_locked=True) or self._most_urgent(queue, up_to, full)
             if found is None:
                 return None
             ticket = self._take(*found, worker, lease, max_attempts)
@@ -90,7 +101,15 @@ class TaskRepository:
                 return ticket
         return None
 
-    def _most_urgent(self, queue: str, up_to: int | None, skip_locked: bool = False) -> tuple[Run, str] | None:
+    def _full(self, most_running: int) -> Sequence[str]:
+        """Projects of the teams that have so many runs at work."""
+        at_work = select(Project.team_id).join(Run, Run.project_id == Project.id).where(Run.state == RUNNING)
+        teams = at_work.group_by(Project.team_id).having(func.count() >= most_running)
+        return self.session.scalars(select(Project.id).where(Project.team_id.in_(teams))).all()
+
+    def _most_urgent(
+        self, queue: str, up_to: int | None, full: Sequence[str], skip_locked: bool = False
+    ) -> tuple[Run, str] | None:
         query = (
             select(Run, Task.id)
             .join(Task, Task.run_id == Run.id)
@@ -100,6 +119,8 @@ class TaskRepository:
             .with_for_update(of=Run, skip_locked=skip_locked)
             .execution_options(populate_existing=True)
         )
+        if full:
+            query = query.where((Run.state == RUNNING) | Run.project_id.not_in(full))
         if up_to is not None:
             query = query.where(Task.priority <= up_to)
         found = self.session.execute(query).one_or_none()

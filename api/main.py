@@ -27,6 +27,7 @@ from .guard import COOKIE, Guard
 from .metrics import Meter, Metrics, ServiceState
 from .rates import Rates
 from .refusals import Refusals
+from .request_ids import RequestIds
 from .routes import (
     auth,
     cases,
@@ -66,7 +67,7 @@ class Guarded(FastAPI):
     def build_middleware_stack(self) -> ASGIApp:
         context: Context = self.state.context
         inner = Doorkeeper(super().build_middleware_stack(), context, BASE)
-        return Meter(Guard(inner, context.settings.hosts), self.state.metrics)
+        return RequestIds(Meter(Guard(inner, context.settings.hosts), self.state.metrics))
 
 
 def create_app(settings: Settings | None = None, reconcile: bool = True) -> FastAPI:

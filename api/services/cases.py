@@ -95,11 +95,16 @@ def examine(context: Context, scope: Scope, case: Case) -> tuple[tuple[str, ...]
     """Warnings, and the id of the data set the case refers to. Raises CaseError."""
     with context.database.read() as session:
         row = find_data(session, scope, case)
-        source = PinnedSource(row, read_bytes)
+        source = PinnedSource(row, read_bytes, states_conventions(case))
     try:
         return tuple(check(case, source)), None if row is None else row.id
     except DataError as error:
         raise CaseError([FieldError(DATA, str(error))]) from None
+
+
+def states_conventions(case: Case) -> bool:
+    hydrodynamics = case.vessel.hydrodynamics if case.vessel else None
+    return hydrodynamics is not None and hydrodynamics.wamit is not None
 
 
 def find_data(session: Session, scope: Scope, case: Case) -> DataSet | None:

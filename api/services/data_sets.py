@@ -105,7 +105,7 @@ def opened(context: Context, scope: Scope, key: str) -> tuple[DataSet, Hydrodyna
     """A data set and what it holds."""
     with context.database.read() as session:
         row = DataSetRepository(session, scope).get(key)
-        source = PinnedSource(row, read_bytes)
+        source = PinnedSource(row, read_bytes, stated=False)
     return row, source.open(row.name)
 
 

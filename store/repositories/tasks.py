@@ -6,6 +6,7 @@ is fenced by the attempt it claimed, so that a late worker changes nothing and l
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -21,6 +22,8 @@ from ..errors import LostLeaseError
 from ..models import CANCELLED, CANCELLING, FAILED, QUEUED, RUNNING, SUCCEEDED, CaseVersion, DataSet, Project, Run, Task
 from ..sources import PinnedSource
 
+STATED = "wamit"
+"""In a case's text where it states conventions of WAMIT files."""
 NEXT_TRIES = 5
 EARLY = 5
 """Times max_attempts: how many attempts are made of a task whose workers lose their leases while they live."""
@@ -164,7 +167,7 @@ class TaskRepository:
             canonical=version.canonical,
             analyses=tuple(run.analyses),
             overrides=run.overrides,
-            data=PinnedSource(data),
+            data=PinnedSource(data, stated=STATED in version.canonical or STATED in json.dumps(run.overrides)),
             chunk=Chunk.from_dict(task.chunk),
             checkpoint=task.checkpoint,
             part=task.part,

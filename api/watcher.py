@@ -36,7 +36,7 @@ NEWEST, MOST_ACTIVE = 50, 200
 ESTIMATE_SECONDS, ESTIMATES, OF_PROJECTS = 5.0, 50, 8
 """Runs of which nothing changed for so long are read again for their estimates: once a second so many of those that
 somebody follows alone, and so many of projects."""
-TOLD_AT_ONCE = 25
+TOLD_AT_ONCE = 10
 """Listeners that are told between two turns of the event loop, so that requests come in between."""
 log = logging.getLogger(__name__)
 
@@ -267,7 +267,7 @@ async def _turn(told: int) -> int:
     """Let others have the event loop after every few."""
     if told < TOLD_AT_ONCE:
         return told + 1
-    await asyncio.sleep(0.001)
+    await asyncio.sleep(0.002)
     return 0
 
 

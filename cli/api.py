@@ -65,7 +65,7 @@ def run_api(options: argparse.Namespace) -> int:
         timeout_keep_alive=30,
     )
     gc.freeze()  # what is here now stays: to look it through again and again would stop all answers for 0.1 s each time
-    gc.set_threshold(10_000, 10, 10)
+    gc.set_threshold(5_000, 5, 40)
     gc.enable()
 
     class Server(uvicorn.Server):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import time
+import uuid
 from pathlib import Path
 
 import pytest
@@ -153,7 +154,7 @@ def test_a_set_that_was_read_is_not_fetched_again(database: Database) -> None:
     asked: list[str] = []
     event.listen(database.engine, "before_cursor_execute", lambda *given: asked.append(given[2]))
     with database.write() as session:
-        row, _ = DataSetRepository(session, scope).save("barge", "barge.nc", "c" * 64, payload, {})
+        row, _ = DataSetRepository(session, scope).save("barge", "barge.nc", 2 * uuid.uuid4().hex, payload, {})
     for stated, fetched in ((False, 1), (False, 0), (True, 1)):
         asked.clear()
         with database.read() as session:

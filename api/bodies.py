@@ -10,6 +10,7 @@ from typing import Annotated, Any, TypeVar
 from fastapi import Depends, Request
 from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel, ValidationError
+from starlette.concurrency import run_in_threadpool
 
 from solver.case.text import MAX_BYTES
 from solver.outcome import CaseError, FieldError
@@ -21,6 +22,9 @@ Model = TypeVar("Model", bound=BaseModel)
 
 DRAIN_BYTES = 64_000_000
 """A body is read to here, and thrown away beyond what a case may have, so that the client gets its answer."""
+
+
+SMALL_BYTES = 20_000
 
 
 @dataclass(frozen=True)
@@ -88,11 +92,18 @@ def _no_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 async def read_run_request(body: Annotated[Body, Depends(read_body)]) -> RunRequest:
-    return _validated(RunRequest, body)
+    return await _read(RunRequest, body)
 
 
 async def read_study_request(body: Annotated[Body, Depends(read_body)]) -> StudyRequest:
-    return _validated(StudyRequest, body)
+    return await _read(StudyRequest, body)
+
+
+async def _read(model: type[Model], body: Body) -> Model:
+    """A large body is read in a thread: the event loop answers everybody."""
+    if len(body.content) <= SMALL_BYTES:
+        return _validated(model, body)
+    return await run_in_threadpool(_validated, model, body)
 
 
 def _validated(model: type[Model], body: Body) -> Model:

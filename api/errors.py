@@ -95,6 +95,14 @@ def _too_many(_: ExceptionHandler, __: Request, error: TooManyError) -> Problem:
     return Problem("Too many attempts.", type_="too-many", detail=str(error), status=429, headers=headers)
 
 
+def _quota(_: ExceptionHandler, request: Request, error: QuotaError) -> Problem:
+    """Kept too, so that the team sees on its page what was refused."""
+    scope = request.scope.get("state", {}).get("admitted")
+    if scope is not None:
+        request.app.state.refusals.add(scope.team_id, str(error))
+    return Problem("A limit is reached.", type_="quota", detail=str(error), status=429)
+
+
 def install(app: FastAPI) -> None:
     handlers: dict[type[Exception], Any] = {
         CaseError: _case,
@@ -104,7 +112,7 @@ def install(app: FastAPI) -> None:
         SignInError: _sign_in,
         ForbiddenError: _status(403, "forbidden", "The caller may not do this."),
         TooManyError: _too_many,
-        QuotaError: _status(429, "quota", "The team has as much as it may have."),
+        QuotaError: _quota,
         ConflictError: _status(409, "conflict", "The present state does not allow this."),
         TooSlowError: _status(504, "too-slow", "The answer did not come in time."),
         OperationalError: _away,

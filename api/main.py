@@ -8,7 +8,7 @@ from contextlib import asynccontextmanager
 from fastapi import APIRouter, Depends, FastAPI, Security
 from fastapi.security import APIKeyCookie, HTTPBearer
 from starlette.types import ASGIApp
-from starlette_compress import CompressMiddleware
+from starlette_compress import CompressMiddleware, remove_compress_type
 
 from store import isolation
 from store.database import Database
@@ -26,6 +26,8 @@ from .etag import ETags
 from .guard import COOKIE, Guard
 from .metrics import Meter, Metrics, ServiceState
 from .rates import Rates
+from .refusals import Refusals
+from .request_ids import RequestIds
 from .routes import (
     auth,
     cases,
@@ -45,10 +47,13 @@ from .routes import (
     users,
 )
 from .routes.common import problems
+from .streams import Streams
+from .watcher import Watcher
 
 BASE = "/api/v1"
 READERS = tuple(f"api.services.{name}" for name in ("bundle_check", "data_reading", "mesh_reading"))
 """Called in child processes (store/isolation), and loaded before the first."""
+remove_compress_type("text/event-stream")  # each open stream would keep a compressor, a megabyte with zstd
 # for the OpenAPI description only: api/doorkeeper.py reads them
 BEARER = HTTPBearer(auto_error=False, scheme_name="key", description="an API key, sdk_…")
 SESSION = APIKeyCookie(
@@ -62,7 +67,7 @@ class Guarded(FastAPI):
     def build_middleware_stack(self) -> ASGIApp:
         context: Context = self.state.context
         inner = Doorkeeper(super().build_middleware_stack(), context, BASE)
-        return Meter(Guard(inner, context.settings.hosts), self.state.metrics)
+        return RequestIds(Meter(Guard(inner, context.settings.hosts), self.state.metrics))
 
 
 def create_app(settings: Settings | None = None, reconcile: bool = True) -> FastAPI:
@@ -72,7 +77,8 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
     context = Context(settings, Database(settings.database), Doorbell(settings))
     checks = Health(settings, context.database)
     metrics = Metrics(context.database, count_runs=reconcile)
-    metrics.registry.register(ServiceState(checks, context.doorbell))
+    streams = Streams(settings)
+    metrics.registry.register(ServiceState(checks, context.doorbell, streams))
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
@@ -100,6 +106,8 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
     )
     app.state.context = context
     app.state.health = checks
+    app.state.refusals = Refusals()
+    app.state.streams, app.state.watcher = streams, Watcher(context.database)
     app.state.attempts = Attempts(settings)
     errors.install(app)
     app.state.metrics = metrics

@@ -24,12 +24,16 @@ from store.clock import utc_now
 from store.database import Database
 from store.doorbell import Doorbell
 from store.health import DEGRADED, OK, Health
-from store.models import STATES
+from store.models import ACTIVE, FINAL, STATES
 from store.priority import name_of
 from store.repositories import QueueRepository
 
+from .streams import Streams
+
 WINDOW = timedelta(minutes=10)
 """Runs that ended longer ago than this before a scrape are not seen by the histogram of run times."""
+ENDED_SECONDS = 60.0
+"""How old the numbers of ended runs may be: to count a hundred thousand takes 20 ms."""
 METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")
 LOOK_SECONDS = 15.0
 """How often the first of several processes looks for runs that ended, since it may never be the one that is asked."""
@@ -103,9 +107,17 @@ class _Rows(Collector):
 
     def __init__(self, database: Database):
         self._database = database
+        self._ended: dict[str, int] = {}
+        self._counted_at = -ENDED_SECONDS
 
     def describe(self) -> list[Metric]:
         return []
+
+    def _states(self, queues: QueueRepository) -> dict[str, int]:
+        """Runs by state: active ones as they are, ended ones as they were when they were counted last."""
+        if time.monotonic() - self._counted_at >= ENDED_SECONDS:
+            self._ended, self._counted_at = queues.states(FINAL), time.monotonic()
+        return self._ended | queues.states(ACTIVE)
 
     def collect(self) -> Iterator[Metric]:
         up = GaugeMetricFamily("slowdrift_database_up", "1 when the database answers")
@@ -113,7 +125,7 @@ class _Rows(Collector):
         try:
             with self._database.read() as session:
                 queues = QueueRepository(session)
-                waiting, states, workers = queues.waiting(), queues.states(), queues.workers()
+                waiting, states, workers = queues.waiting(), self._states(queues), queues.workers()
         except SQLAlchemyError:
             up.add_metric([], 0)
             yield up
@@ -141,10 +153,10 @@ class _Rows(Collector):
 
 
 class ServiceState(Collector):
-    """Gauges of this process: what its health checks said last, and its dispatcher."""
+    """Gauges of this process: what its health checks said last, its dispatcher, and its event streams."""
 
-    def __init__(self, health: Health, doorbell: Doorbell):
-        self._health, self._doorbell = health, doorbell
+    def __init__(self, health: Health, doorbell: Doorbell, streams: Streams):
+        self._health, self._doorbell, self._streams = health, doorbell, streams
 
     def describe(self) -> list[Metric]:
         return []
@@ -161,6 +173,11 @@ class ServiceState(Collector):
         yield GaugeMetricFamily("slowdrift_dispatcher_waiting", "Messages that wait to be sent", bell.waiting)
         yield CounterMetricFamily("slowdrift_dispatcher_sent", "Messages that the broker took", bell.sent)
         yield CounterMetricFamily("slowdrift_dispatcher_failed", "Messages that it did not take", bell.failed)
+        yield GaugeMetricFamily("slowdrift_streams_open", "Event streams", self._streams.open)
+        yield GaugeMetricFamily("slowdrift_streams_limit", "Event streams of this process at most", self._streams.most)
+        yield CounterMetricFamily(
+            "slowdrift_streams_refused", "Event streams refused by a limit", self._streams.refused
+        )
 
 
 class Meter:

@@ -103,7 +103,9 @@ class DataSetPage(BaseModel):
 
 
 Tag = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9 ._:/-]{0,49}$")]
-Label = Annotated[str, Field(max_length=200, pattern=r"^[^\x00-\x1f\x7f]*$")]
+UNSHOWN = r"\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff"
+"""Control characters; the last are those that turn the direction of what follows, so that a name reads as another."""
+Label = Annotated[str, Field(max_length=200, pattern=rf"^[^{UNSHOWN}]*$")]
 Priority = Literal["interactive", "normal", "batch"]
 
 
@@ -187,7 +189,7 @@ class RunInfo(BaseModel):
 class RunPage(BaseModel):
     items: list[RunInfo]
     next_cursor: str | None
-    total: int
+    total: int | None = Field(None, description="how many there are in all, where `total=true` asks for it")
 
 
 class AxisInfo(BaseModel):

@@ -77,7 +77,16 @@ class QuotaItem(BaseModel):
     setting: str = Field(examples=["SLOWDRIFT_QUOTA_QUEUED_RUNS"], description="with which it is changed")
 
 
+class Refusal(BaseModel):
+    at: datetime = Field(examples=[TIME])
+    detail: str = Field(description="which limit, and who can change it")
+
+
 class QuotaInfo(BaseModel):
     """Limits of the caller's team."""
 
     items: list[QuotaItem]
+    refused: list[Refusal] = Field(
+        default=[], description="the last requests that a limit refused, newest first, as this process knows"
+    )
+    who: str = Field("", description="who can change the limits")

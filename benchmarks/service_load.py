@@ -72,16 +72,18 @@ def bare() -> float:
 
 
 @contextlib.contextmanager
-def started(kind: str, *options: str, accounts: int = 0) -> Iterator[httpx.Client]:
-    """The service, and a client of its first member; the keys of all are in the environment of children."""
+def started(kind: str, *options: str, accounts: int = 0, **values: object) -> Iterator[httpx.Client]:
+    """The service, and a client of its first member; the keys of all are in the environment of children. values: of
+    its settings."""
     name = f"sd_load_{uuid.uuid4().hex[:10]}"
     with tempfile.TemporaryDirectory(prefix="sd-load-", ignore_cleanup_errors=True) as folder:
-        given: dict[str, object] = {"data_dir": Path(folder), "queue_prefix": name}
+        given: dict[str, object] = {"data_dir": Path(folder), "queue_prefix": name} | values
         if kind != "embedded":
             given["database_url"] = create_database(name)
             given["broker_url"] = REDIS if kind == "postgres-redis" else RABBITMQ
         try:
             settings = Settings.model_validate(given)
+            os.environ["SD_LOAD_FOLDER"] = str(settings.data_dir)
             with service(settings, False, *options) as client:
                 keys = team_of(settings, accounts) if accounts else []
                 os.environ[ALL_KEYS] = " ".join(keys)
@@ -232,7 +234,7 @@ def load(
     else:
         study(client, runs, 2.0e9)
     submitted = time.monotonic() - began
-    wait_until(lambda: client.get("/api/v1/runs?state=queued,running&limit=1").json()["total"] == 0, 600)
+    wait_until(lambda: client.get("/api/v1/runs?state=queued,running&limit=1&total=true").json()["total"] == 0, 600)
     done = time.monotonic() - began
     reads = end_polling(polling)
     measured = summary([took for when, took in reads if began <= when < began + done]) | {

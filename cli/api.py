@@ -46,10 +46,12 @@ def run_api(options: argparse.Namespace) -> int:
     sys.setswitchinterval(TURN)
     gc.disable()
     settings = Settings.from_env()
+    most = max(10, min(settings.max_connections, raise_open_files() - OTHER_FILES))
+    settings = settings.model_copy(update={"max_connections": most})
     configure(settings.log_level, settings.log_json)
     app = compose_app(settings, options.port, pages=not options.no_pages, first=not options.beside)
     connections = Connections(
-        most=max(10, min(settings.max_connections, raise_open_files() - OTHER_FILES)),
+        most=most,
         most_per_address=settings.max_connections_per_address,
         trusted=trusted_by(os.environ.get("FORWARDED_ALLOW_IPS", "")),
     )
@@ -63,7 +65,7 @@ def run_api(options: argparse.Namespace) -> int:
         timeout_keep_alive=30,
     )
     gc.freeze()  # what is here now stays: to look it through again and again would stop all answers for 0.1 s each time
-    gc.set_threshold(10_000, 10, 10)
+    gc.set_threshold(5_000, 5, 40)
     gc.enable()
 
     class Server(uvicorn.Server):

@@ -204,7 +204,10 @@ class RunPage(BaseModel):
     )
     items: list[RunInfo]
     next_cursor: str | None
-    total: int
+    total: Annotated[
+        int | None,
+        Field(description="how many there are in all, where `total=true` asks for it"),
+    ] = None
 
 
 class StudyInfo(BaseModel):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import ColumnElement, Text, cast, or_, select
+from sqlalchemy import ColumnElement, Text, cast, func, or_, select
 
 from .models import Run
 from .people import User
@@ -39,14 +39,20 @@ class RunFilter:
         if self.states:
             found.append(Run.state.in_(self.states))
         if self.text:
-            found.append(or_(*(column.icontains(self.text, autoescape=True) for column in (Run.name, Run.case_name))))
+            found.append(or_(*(_holds(column, self.text) for column in (Run.name, Run.case_name))))
         if self.tag:
             found.append(cast(Run.tags, Text).contains(json.dumps(self.tag), autoescape=True))
         if self.who:
-            named = select(User.id).where(User.name.icontains(self.who, autoescape=True))
-            found.append(or_(Run.created_by == self.who, Run.created_by.in_(named)))
+            meant = or_(User.id == self.who, User.name.icontains(self.who, autoescape=True))
+            found.append(Run.created_by.in_(select(User.id).where(meant)))
         if self.since is not None:
             found.append(Run.created_at >= self.since)
         if self.until is not None:
             found.append(Run.created_at <= self.until)
         return found
+
+
+def _holds(column: Any, text: str) -> ColumnElement[bool]:
+    """Whether a part of the text in a column is this, whatever its letters' case: as the index over trigrams has it."""
+    pattern = text.lower().replace("/", "//").replace("%", "/%").replace("_", "/_")
+    return func.lower(column).like(f"%{pattern}%", escape="/")

@@ -17,6 +17,7 @@ from sqlalchemy import (
     Text,
     UniqueConstraint,
     false,
+    text,
 )
 from sqlalchemy.engine import Dialect
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
@@ -149,6 +150,14 @@ class Study(Base):
     created_at: Mapped[datetime] = mapped_column(default=utc_now)
 
 
+_IS_ACTIVE = text("state IN ('queued', 'running', 'cancelling')")
+ACTIVE_RUNS = Index("ix_runs_active", "project_id", "id", postgresql_where=_IS_ACTIVE, sqlite_where=_IS_ACTIVE)
+_IS_JOB = text("kind = 'hydrodynamics'")
+JOBS = Index("ix_runs_jobs", "project_id", "id", postgresql_where=_IS_JOB, sqlite_where=_IS_JOB)
+_IS_TIMED = text("state = 'succeeded' AND seconds IS NOT NULL")
+TIMED_TASKS = Index("ix_tasks_timed", "queue", "id", postgresql_where=_IS_TIMED, sqlite_where=_IS_TIMED)
+
+
 class Run(Base):
     """One job: a case version and the analyses asked of it, or hydrodynamics. `state` is the truth about it."""
 
@@ -159,6 +168,12 @@ class Run(Base):
         Index("ix_runs_project_id", "project_id", "id"),
         Index("ix_runs_study", "study_id", "study_index"),
         Index("ix_runs_identity", "project_id", "identity"),
+        Index("ix_runs_finished", "finished_at"),
+        Index("ix_runs_data_set", "data_set_id"),
+        Index("ix_runs_state", "state"),
+        Index("ix_runs_starter", "project_id", "created_by", "id"),
+        ACTIVE_RUNS,
+        JOBS,
     )
     id: Mapped[str] = mapped_column(Id, primary_key=True, default=new_id)
     project_id: Mapped[str] = mapped_column(Id, ForeignKey("projects.id"))
@@ -192,6 +207,8 @@ class Run(Base):
     warnings: Mapped[list[Any]] = mapped_column(default=list)
     solver_version: Mapped[str | None] = mapped_column(String(50), default=None)
     summary: Mapped[str | None] = mapped_column(Text, default=None, deferred=True)
+    figures: Mapped[str | None] = mapped_column(Text, default=None, deferred=True)
+    """Values of the summary that tables of studies show, as JSON (store/figures.py)."""
     created_at: Mapped[datetime] = mapped_column(default=utc_now)
     started_at: Mapped[datetime | None] = mapped_column(default=None)
     finished_at: Mapped[datetime | None] = mapped_column(default=None)
@@ -204,7 +221,12 @@ class Task(Base):
     """One chunk of a run. Lease, attempt, heartbeat and checkpoint belong here; times are seconds of `clock`."""
 
     __tablename__ = "tasks"
-    __table_args__ = (UniqueConstraint("run_id", "number"), Index("ix_tasks_state", "state", "rung_at"), CLAIMS)
+    __table_args__ = (
+        UniqueConstraint("run_id", "number"),
+        Index("ix_tasks_state", "state", "rung_at"),
+        CLAIMS,
+        TIMED_TASKS,
+    )
     id: Mapped[str] = mapped_column(Id, primary_key=True, default=new_id)
     run_id: Mapped[str] = mapped_column(Id, ForeignKey("runs.id", ondelete="CASCADE"))
     number: Mapped[int]

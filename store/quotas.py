@@ -14,7 +14,9 @@ from .repositories.usage import Usage, UsageRepository
 from .scope import Scope
 from .settings import Settings
 
+WHO = "whoever runs the service, by the setting named beside each limit"
 CHANGE = "Whoever runs the service can change it (SLOWDRIFT_{setting})."
+STREAMS = "event streams"
 REMEDIES = {
     "queued runs": "wait until some have ended, or cancel some",
     "stored runs": "delete some",
@@ -54,6 +56,7 @@ def quotas(settings: Settings, session: Session, scope: Scope) -> list[Quota]:
     """What the team of the scope has and may have."""
     used: Usage = UsageRepository(session, scope).of_team()
     return [
+        Quota("running runs", used.running, settings.quota_running_runs, "QUOTA_RUNNING_RUNS"),
         Quota("queued runs", used.queued, settings.quota_queued_runs, "QUOTA_QUEUED_RUNS"),
         Quota("stored runs", used.runs, settings.quota_stored_runs, "QUOTA_STORED_RUNS"),
         Quota("data sets and meshes", used.files, settings.quota_data_sets, "QUOTA_DATA_SETS"),
@@ -88,6 +91,6 @@ def _counted(count: Callable[[], int], more: int, limit: int) -> int:
 
 def check_file(settings: Settings, session: Session, scope: Scope, size: int) -> None:
     """Whether the team may store a file of so many bytes that is in this session already. Raises QuotaError."""
-    _, _, files, content = quotas(settings, session, scope)
+    *_, files, content = quotas(settings, session, scope)
     replace(files, used=files.used - 1).check(1)
     replace(content, used=content.used - size).check(size)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from solver.case.text import Loc, Reading, read_document
+from solver.case.text import read_case as read_here
 from solver.case.vessel import WamitFiles
 from solver.outcome import CaseError, DataError, FieldError
 from solver.vessel.data import FileSource, HydrodynamicData
@@ -40,6 +42,62 @@ def damaged(name: str, stopped: Stopped) -> str:
     if stopped.cause == "memory":
         return f"{name}: the file is damaged or too large ({stopped}); write it again, with fewer values"
     return f"{name}: the file is damaged ({stopped}); write it again"
+
+
+SMALL_TEXT, SMALL_DATA = 50_000, 5000
+"""Characters of a case's text, values of a case's data: what is read without a child, in a few milliseconds."""
+CASE_SECONDS = 20.0
+
+
+def read_case(text: str | bytes) -> Reading:
+    """As solver.case.text.read_case, a large text in a child. Raises CaseError."""
+    return read_here(text) if len(text) <= SMALL_TEXT else _reading("store.reading:case_of_text", text, len(text))
+
+
+def read_case_data(data: Any) -> Reading:
+    """As Reading.of, for plain data from anybody. Raises CaseError."""
+    size = sum(1 for _ in islice(_values(data), SMALL_DATA + 1))
+    return Reading.of(data) if size <= SMALL_DATA else _reading("store.reading:case_of_data", data, size)
+
+
+def _values(data: Any) -> Iterator[Any]:
+    waiting = [data]
+    while waiting:
+        value = waiting.pop()
+        yield value
+        if isinstance(value, dict | list):
+            waiting += value.values() if isinstance(value, dict) else value
+
+
+def _reading(function: str, given: Any, size: int) -> Reading:
+    """A case with many faults is answered by the child; what it lets pass has few, and is looked at here again."""
+    try:
+        data, lines, repeated = call(function, given, limits=limits_for(size, CASE_SECONDS))
+    except Stopped as stopped:
+        raise CaseError([FieldError((), f"the case takes too much to be read ({stopped}); make it smaller")]) from None
+    return Reading.of(data, lines, repeated)
+
+
+def case_of_text(text: str | bytes) -> tuple[Any, dict[Loc, int], list[FieldError]]:
+    """In the child: the document, unless its fields have faults."""
+    document = read_document(text)
+    _refuse(Reading.of(*document))
+    return document
+
+
+def case_of_data(data: Any) -> tuple[Any, dict[Loc, int], list[FieldError]]:
+    """In the child: the same data, unless its fields have faults."""
+    _refuse(Reading.of(data))
+    return data, {}, []
+
+
+def _refuse(reading: Reading) -> None:
+    if len(reading.errors) > FEW:
+        reading.sound()
+
+
+FEW = 100
+"""Faults: with fewer, the case is also looked at together with its hydrodynamic data, which the child has not."""
 
 
 def read_files(files: Mapping[str, bytes], wamit: WamitFiles | None = None) -> HydrodynamicData:
@@ -96,6 +154,23 @@ def _data(function: str, arguments: tuple[Any, ...], limits: Limits, name: str) 
     if not isinstance(found, HydrodynamicData):
         raise DataError(f"{name}: the file is damaged; write it again")
     return found
+
+
+def quality_of(payload: bytes, filename: str) -> list[dict[str, Any]]:
+    """The quality checks of stored hydrodynamic data, in plain values. Raises DataError."""
+    try:
+        found: list[dict[str, Any]] = call("store.reading:checks", payload, filename, limits=limits_for(len(payload)))
+    except Stopped as stopped:
+        raise DataError(damaged(filename, stopped)) from None
+    return found
+
+
+def checks(payload: bytes, filename: str) -> list[dict[str, Any]]:
+    """In the child."""
+    from solver.vessel.data import read_bytes as read
+    from solver.vessel.quality import quality
+
+    return [check.as_dict() for check in quality(read(payload, filename))]
 
 
 def read_deck(

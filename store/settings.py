@@ -78,6 +78,14 @@ class Settings(BaseModel):
     """Open connections of one API process; fewer where the system allows fewer open files."""
     max_connections_per_address: int = Field(500, ge=0)
     """Of them from one address; 0: any number. This machine and trusted proxies are not counted."""
+    max_streams: int = Field(2500, ge=1)
+    """Open event streams of one API process; at most half of its connections."""
+    max_streams_per_caller: int = Field(100, ge=0)
+    """Of them of one user, or of one address behind share links; 0: any number."""
+    quota_streams: int = Field(1000, ge=0)
+    """Of them of one team; 0: any number."""
+    quota_running_runs: int = Field(0, ge=0)
+    """Runs of one team that may be at work at a time, the others wait; 0: any number."""
     quota_queued_runs: int = Field(20_000, ge=0)
     """Runs of one team that may wait; 0: any number."""
     quota_stored_runs: int = Field(200_000, ge=0)

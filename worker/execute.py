@@ -24,6 +24,7 @@ from store.database import Database
 from store.effective import solver_version, stored_case
 from store.errors import LostLeaseError
 from store.estimate import snapshot
+from store.figures import figures_text
 from store.logs import about
 from store.models import FAILED, SUCCEEDED
 from store.repositories import ChannelRepository, TaskRepository
@@ -82,8 +83,9 @@ def execute(worker: Worker, task_id: str) -> str:
 def execute_next(worker: Worker, queue: str, up_to: int | None = None) -> tuple[str, str] | None:
     """Do the most urgent task of the queue; id and word. None when nothing waits (of priority number `up_to`)."""
     with worker.database.write() as session:
+        settings = worker.settings
         ticket = TaskRepository(session).claim_next(
-            queue, worker.name, worker.settings.lease_seconds, worker.settings.max_attempts, up_to
+            queue, worker.name, settings.lease_seconds, settings.max_attempts, up_to, settings.quota_running_runs
         )
     return None if ticket is None else (ticket.task_id, _kept(worker, ticket))
 
@@ -195,14 +197,16 @@ def conclude(result: Result, job: Job) -> Outcome:
         name: FAILED if name in failures else SUCCEEDED if name in result.summary else "skipped"
         for name in job.analyses
     }
-    reason = " ".join(f"{name}: {text}" for name, text in failures.items()) or None
+    reason = " ".join(f"{name}: {words}" for name, words in failures.items()) or None
+    text = to_json(result.summary)
     return Outcome(
         state=FAILED if failures else SUCCEEDED,
         reason=reason,
         outcomes=outcomes,
-        summary=to_json(result.summary),
+        summary=text,
         warnings=tuple(str(text) for text in result.summary.get("warnings", ())),
         solver_version=str(result.summary.get("provenance", {}).get("solver_version") or solver_version() or "unknown"),
+        figures=figures_text(json.loads(text)),
     )
 
 

@@ -87,7 +87,7 @@ def list_data_sets(context: ContextDep, scope: ScopeDep, limit: Limit = 50, curs
 @router.get("/{data_set_id}", responses=problems(404))
 def get_data_set(context: ContextDep, scope: ScopeDep, data_set_id: Key) -> DataSetDetail:
     """What it holds, and the quality checks."""
-    return service.detail(*service.opened(context, scope, data_set_id))
+    return service.detail(context, scope, data_set_id)
 
 
 @router.get("/{data_set_id}/coefficients", responses=problems(404, 422))

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 
 from store.priority import name_of
-from store.quotas import quotas
+from store.quotas import STREAMS, WHO, Quota, quotas
 from store.repositories import QueueRepository
 
 from ..context import ContextDep, ScopeDep
-from ..study_schemas import QueueClass, QueueInfo, QuotaInfo, QuotaItem
+from ..refusals import Refusals
+from ..streams import Streams
+from ..study_schemas import QueueClass, QueueInfo, QuotaInfo, QuotaItem, Refusal
 
 router = APIRouter(prefix="/queue", tags=["studies"])
 quota_router = APIRouter(tags=["studies"])
 
 
 @quota_router.get("/quota")
-def get_quota(context: ContextDep, scope: ScopeDep) -> QuotaInfo:
-    """What the team has queued and stored, the limits, and what is left of them."""
+def get_quota(request: Request, context: ContextDep, scope: ScopeDep) -> QuotaInfo:
+    """What the team has at work, queued and stored, the limits, what is left of them, and what they refused of late."""
+    streams: Streams = request.app.state.streams
+    refusals: Refusals = request.app.state.refusals
     with context.database.read() as session:
         found = quotas(context.settings, session, scope)
+    found.append(Quota(STREAMS, streams.of_team(scope.team_id), streams.per_team, "QUOTA_STREAMS"))
     return QuotaInfo(
         items=[
             QuotaItem(
@@ -30,7 +35,9 @@ def get_quota(context: ContextDep, scope: ScopeDep) -> QuotaInfo:
                 setting=f"SLOWDRIFT_{each.setting}",
             )
             for each in found
-        ]
+        ],
+        refused=[Refusal(at=at, detail=detail) for at, detail in refusals.of(scope.team_id)],
+        who=WHO,
     )
 
 

@@ -77,12 +77,14 @@ def list_runs(
     which: Annotated[RunFilter, Depends(run_filter)],
     limit: Limit = 50,
     cursor: Cursor = None,
+    total: Annotated[bool, Query(description="whether to count all that the filters let through")] = False,
 ) -> RunPage:
     """Newest first, unless `sort` says otherwise."""
     with context.database.read() as session:
-        views, total = RunRepository(session, scope).page(limit, cursor, which)
+        runs = RunRepository(session, scope)
+        views, count = runs.page(limit, cursor, which), runs.count(which) if total else None
     items = [service.info(view) for view in views]
-    return as_json(RunPage(items=items, next_cursor=items[-1].id if len(items) == limit else None, total=total))
+    return as_json(RunPage(items=items, next_cursor=items[-1].id if len(items) == limit else None, total=count))
 
 
 @router.get("/{run_id}", responses=problems(404))

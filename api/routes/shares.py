@@ -6,7 +6,6 @@ import json
 from datetime import timedelta
 
 from fastapi import APIRouter
-from fastapi.sse import EventSourceResponse
 
 from solver.outcome import CaseError, FieldError
 from store.clock import utc_now
@@ -77,7 +76,7 @@ def show_shared(context: ContextDep, scope: ScopeDep, share_token: Key) -> Share
 
 
 opened.get("/runs/{run_id}")(runs.get_run)
-opened.get("/runs/{run_id}/events", response_class=EventSourceResponse)(events.follow_run)
+opened.get("/runs/{run_id}/events", response_class=events.EventStream)(events.follow_run)
 opened.get("/runs/{run_id}/case")(runs.get_run_case)
 opened.get("/runs/{run_id}/summary", responses=problems(409))(runs.get_summary)
 opened.get("/runs/{run_id}/channels")(runs.list_channels)

@@ -77,10 +77,12 @@ def get_table(
     """A row per run: what it changes, and picks from its summary."""
     if format == "json":
         return study_table.table(context, scope, study_id, columns, limit, service.place(cursor))
-    make = study_table.as_csv if format == "csv" else study_table.as_parquet
-    file = make(context, scope, study_id, columns)
+    if format == "csv":
+        pieces = study_table.as_csv(context, scope, study_id, columns)
+    else:
+        pieces = _pieces(study_table.as_parquet(context, scope, study_id, columns))
     headers = {"Content-Disposition": f'attachment; filename="study-{study_id[:32]}.{format}"'}
-    return StreamingResponse(_pieces(file), media_type=MEDIA[format], headers=headers)
+    return StreamingResponse(pieces, media_type=MEDIA[format], headers=headers)
 
 
 def _pieces(file: IO[bytes]) -> Iterator[bytes]:

@@ -11,13 +11,13 @@ from sqlalchemy.orm import Session
 
 from solver.case import Case, to_yaml
 from solver.case.partial import noted
-from solver.case.text import MAX_BYTES, Reading, read_case
+from solver.case.text import MAX_BYTES, Reading
 from solver.check import check
 from solver.outcome import CaseError, DataError, FieldError
 from store.effective import stored_case
 from store.errors import NotFoundError
 from store.models import CaseVersion, DataSet
-from store.reading import read_bytes
+from store.reading import read_bytes, read_case, read_case_data
 from store.repositories import CaseRepository, DataSetRepository
 from store.repositories.cases import NewCase
 from store.scope import Scope
@@ -53,7 +53,7 @@ def check_body(context: Context, scope: Scope, body: Body) -> Checked:
 def check_data(context: Context, scope: Scope, data: Any, size: int = 0) -> Checked:
     if size > MAX_BYTES:
         raise CaseError([FieldError((), f"the case has {size} bytes; allowed: at most {MAX_BYTES}")])
-    reading = Reading.of(data)
+    reading = read_case_data(data)
     warnings, data_set_id = _examined(context, scope, reading)
     case = reading.sound()
     return Checked(case, to_yaml(case), warnings, data_set_id)
@@ -95,11 +95,16 @@ def examine(context: Context, scope: Scope, case: Case) -> tuple[tuple[str, ...]
     """Warnings, and the id of the data set the case refers to. Raises CaseError."""
     with context.database.read() as session:
         row = find_data(session, scope, case)
-        source = PinnedSource(row, read_bytes)
+        source = PinnedSource(row, read_bytes, states_conventions(case))
     try:
         return tuple(check(case, source)), None if row is None else row.id
     except DataError as error:
         raise CaseError([FieldError(DATA, str(error))]) from None
+
+
+def states_conventions(case: Case) -> bool:
+    hydrodynamics = case.vessel.hydrodynamics if case.vessel else None
+    return hydrodynamics is not None and hydrodynamics.wamit is not None
 
 
 def find_data(session: Session, scope: Scope, case: Case) -> DataSet | None:

@@ -34,7 +34,7 @@ def export(context: Context, scope: Scope, data_set_id: str, kind: Format, lengt
     """
     with context.database.read() as session:
         row = DataSetRepository(session, scope).get(data_set_id)
-        source, name = PinnedSource(row, read_bytes), row.name
+        source, name = PinnedSource(row, read_bytes, stated=False), row.name
     stem = re.sub(r"[^A-Za-z0-9_-]", "_", re.sub(r"\.[A-Za-z0-9]{1,4}$", "", name))[:60] or "data"
     try:
         data = source.open(name)

@@ -10,11 +10,10 @@ from pydantic import ValidationError
 from solver.case.vessel import WamitFiles
 from solver.outcome import CaseError, DataError, FieldError
 from solver.vessel.data import HydrodynamicData
-from solver.vessel.quality import quality
 from store.isolation import Stopped, call
 from store.models import DataSet
 from store.quotas import check_file
-from store.reading import damaged, limits_for, read_bytes
+from store.reading import damaged, limits_for, quality_of, read_bytes
 from store.repositories import DataSetRepository
 from store.scope import Scope
 from store.sources import PinnedSource
@@ -94,15 +93,19 @@ def info(row: DataSet) -> DataSetInfo:
     )
 
 
-def detail(row: DataSet, data: HydrodynamicData) -> DataSetDetail:
-    return DataSetDetail(**info(row).model_dump(), checks=[check.as_dict() for check in quality(data)])
+def detail(context: Context, scope: Scope, key: str) -> DataSetDetail:
+    """With the quality checks, which are made in a child process: of large data they take seconds."""
+    with context.database.read() as session:
+        row = DataSetRepository(session, scope).get(key)
+        payload = row.payload
+    return DataSetDetail.model_validate(info(row).model_dump() | {"checks": quality_of(payload, row.filename)})
 
 
 def opened(context: Context, scope: Scope, key: str) -> tuple[DataSet, HydrodynamicData]:
     """A data set and what it holds."""
     with context.database.read() as session:
         row = DataSetRepository(session, scope).get(key)
-        source = PinnedSource(row, read_bytes)
+        source = PinnedSource(row, read_bytes, stated=False)
     return row, source.open(row.name)
 
 

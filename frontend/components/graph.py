@@ -7,6 +7,7 @@ from typing import Any
 from dash import dcc
 
 from frontend.figures.base import Figure
+from frontend.figures.safe import safe
 
 CONFIG: dict[str, Any] = {
     "displaylogo": False,
@@ -28,7 +29,7 @@ def figure_graph(figure: Figure, graph_id: str | dict[str, str], label: str, **s
     height = f"{figure['layout']['height']}px"
     return dcc.Graph(
         id=graph_id,
-        figure=figure,
+        figure=safe(figure),
         config=config,
         className="sd-graph",
         style={"height": height, "width": "100%"} | style,

@@ -120,7 +120,9 @@ def show(_refresh: int, chosen: dict[str, Any] | None, at: int, trail: list[str 
     """
     here = [None] if at == 0 else trail[: at + 1]
     wanted = runs_grid.asked(chosen or {})
-    page, error = attempt(lambda: client().get("/runs", limit=runs_grid.PAGE_SIZE, cursor=here[-1], **wanted))
+    page, error = attempt(
+        lambda: client().get("/runs", limit=runs_grid.PAGE_SIZE, cursor=here[-1], total="true", **wanted)
+    )
     if error:
         return no_update, no_update, "", True, True, None, {"display": "none"}, refusal(error)
     items, following = page["items"], page.get("next_cursor")

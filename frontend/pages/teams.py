@@ -102,6 +102,8 @@ def show(team: str | None, _changed: int, offered: list[dict[str, str]]) -> Any:
         parts = [members(rest.get(f"/teams/{team}/members")["items"], owner)]
         homes = [home for home in rest.get("/projects")["items"] if home["team_id"] == team]
         parts.append(projects(homes, owner))
+        if homes:
+            parts.append(limits(rest.get("/quota", project=homes[0]["project_id"])))
         if owner:
             parts.append(invitations(rest.get(f"/teams/{team}/invitations")["items"]))
             parts.append(audit(rest.get(f"/teams/{team}/audit", limit=AUDIT)["items"]))
@@ -140,6 +142,26 @@ def projects(homes: list[dict[str, Any]], owner: bool) -> Any:
          dmc.Button("Make a project", id="project-make", variant="default")]
     )  # fmt: skip
     return dmc.Stack([table("Projects", ["Project", ""], rows, words=True), *([form] if owner else [])], gap="xs")
+
+
+def limits(found: dict[str, Any]) -> Any:
+    """What the team has and may have, what was refused of late, and who can change it."""
+    rows = [
+        [
+            item["name"],
+            f"{item['used']:,}",
+            "no limit" if item["limit"] is None else f"{item['limit']:,}",
+            "" if item["left"] is None else f"{item['left']:,}",
+            item["setting"],
+        ]
+        for item in found["items"]
+    ]
+    refused = [[moment(item["at"]), item["detail"]] for item in found.get("refused", [])]
+    note = f"The limits can be changed by {found['who']}." if found.get("who") else ""
+    shown = [table("Limits", ["Of", "used", "limit", "left", "setting"], rows, min_width=520, note=note, words=True)]
+    if refused:
+        shown.append(table("Refused of late", ["When", "what"], refused, min_width=520, words=True))
+    return dmc.Stack(shown, gap="xs")
 
 
 def invitations(items: list[dict[str, Any]]) -> Any:

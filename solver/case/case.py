@@ -67,6 +67,15 @@ def parse_case(data: Any) -> Case:
     return case
 
 
+MOST_FAULTS = 1000
+"""A case with more is not looked at further."""
+
+
+def too_many(count: int) -> FieldError:
+    """Said before the first MOST_FAULTS."""
+    return FieldError((), f"{count} faults; these are the first {MOST_FAULTS}: mend them, then check again")
+
+
 def examine_case(data: Any) -> tuple[Case | None, list[FieldError]]:
     """A case from plain dicts and lists, and all its faults: of its fields, and between them as far as they are known.
 
@@ -76,6 +85,8 @@ def examine_case(data: Any) -> tuple[Case | None, list[FieldError]]:
         case: Case | None = Case.model_validate(data)
         errors: list[FieldError] = []
     except ValidationError as error:
+        if error.error_count() > MOST_FAULTS:
+            return None, [too_many(error.error_count()), *field_errors(error)]
         errors = field_errors(error)
         case, rules = read_part(Case, data) if isinstance(data, dict) else (None, [])
         places = {item.loc for item in errors}
@@ -89,8 +100,9 @@ def examine_case(data: Any) -> tuple[Case | None, list[FieldError]]:
 
 
 def field_errors(error: ValidationError) -> list[FieldError]:
-    """Every fault of a field, with its value and the allowed range; without those that only follow from another."""
-    return _telling([_field_error(item) for item in error.errors(include_url=False)])
+    """The faults of fields, each with its value and the allowed range, at most MOST_FAULTS; without those that only
+    follow from another."""
+    return _telling([_field_error(item) for item in error.errors(include_url=False)[:MOST_FAULTS]])
 
 
 _TAGS = {"jonswap", "pierson-moskowitz", "tabulated", "regular"}

@@ -15,7 +15,7 @@ from typing import Any
 import yaml
 
 from ..outcome import CaseError, FieldError
-from .case import Case, examine_case
+from .case import MOST_FAULTS, Case, examine_case, too_many
 
 MAX_BYTES = 1_000_000
 MAX_NODES = 200_000
@@ -80,10 +80,17 @@ class Reading:
         self.errors += [error if error.line else with_line(error, self.lines) for error in errors]
 
     def sound(self) -> Case:
-        """The case. Raises CaseError with every fault, by line."""
+        """The case. Raises CaseError with every fault, by line, or with the first MOST_FAULTS."""
         if self.errors or self.case is None:
-            raise CaseError(sorted(self.errors, key=lambda error: error.place))
+            raise CaseError(first_of(sorted(self.errors, key=lambda error: error.place)))
         return self.case
+
+
+def first_of(errors: list[FieldError]) -> list[FieldError]:
+    """All, or the first MOST_FAULTS after one that tells how many there are."""
+    if len(errors) <= MOST_FAULTS + 1:
+        return errors
+    return [too_many(len(errors)), *errors[:MOST_FAULTS]]
 
 
 def load_case(text: str | bytes) -> Case:
@@ -103,7 +110,7 @@ def read_text(text: str | bytes) -> tuple[Any, dict[Loc, int]]:
     """Plain data and the line number of every path, from YAML or JSON text. Raises CaseError."""
     data, lines, repeated = read_document(text)
     if repeated:
-        raise CaseError(repeated)
+        raise CaseError(first_of(repeated))
     return data, lines
 
 

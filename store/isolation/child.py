@@ -19,6 +19,7 @@ from typing import IO, Any
 from . import plain
 
 OPEN_FILES, ABOVE = 64, 128
+NICE = 10
 NO_MEMORY, NO_ANSWER = 71, 70
 """Exit statuses."""
 MESSAGE = struct.Struct("<ddqq")
@@ -75,6 +76,7 @@ def _only(*descriptors: int) -> list[int]:
 
 
 def _set(limits: Limits) -> None:
+    _stand_back()
     seconds = max(1, round(limits.cpu_seconds))
     _limit(resource.RLIMIT_CPU, seconds, seconds + 1)
     _limit(resource.RLIMIT_FSIZE, limits.answer_bytes)
@@ -85,6 +87,14 @@ def _set(limits: Limits) -> None:
             pages = int(file.read().split()[0])
         _limit(resource.RLIMIT_AS, pages * resource.getpagesize() + limits.memory_bytes)
     signal.setitimer(signal.ITIMER_REAL, limits.wall_seconds)
+
+
+def _stand_back() -> None:
+    """The processor goes to those first who answer requests."""
+    with contextlib.suppress(OSError, AttributeError):
+        os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
+    with contextlib.suppress(OSError):
+        os.nice(NICE)
 
 
 def _limit(kind: int, soft: int, hard: int | None = None) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING
 
 from sqlalchemy import text
@@ -12,7 +13,7 @@ from ..database import Database
 if TYPE_CHECKING:
     from alembic.config import Config
 
-HEAD = "0006"
+HEAD = "0007"
 """The newest revision; a constant, so that asking whether a database is current loads no Alembic."""
 _LOCK = 7_345_001  # any number of our own: one migration at a time on a PostgreSQL server's database
 
@@ -33,7 +34,11 @@ def upgrade(database: Database, revision: str = "head") -> None:
     if database.engine.dialect.name != "postgresql":
         return command.upgrade(_config(database), revision)
     with database.engine.connect() as connection:
-        connection.execute(text("SELECT pg_advisory_lock(:key)"), {"key": _LOCK})
+        # asked again and again: an index made CONCURRENTLY waits for every statement, so for one that waits for the lock
+        while not connection.scalar(text("SELECT pg_try_advisory_lock(:key)"), {"key": _LOCK}):
+            connection.rollback()
+            time.sleep(0.2)
+        connection.commit()
         try:
             command.upgrade(_config(database), revision)
         finally:

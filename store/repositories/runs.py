@@ -153,15 +153,19 @@ class RunRepository(Scoped):
     def view(self, key: str) -> RunView:
         return self._with_tasks([self.get(key)])[0]
 
-    def page(self, limit: int, cursor: str | None, which: RunFilter | None = None) -> tuple[list[RunView], int]:
-        """Newest first, from below the id `cursor` (or oldest first, from above); and how many there are in all."""
+    def count(self, which: RunFilter) -> int:
+        """How many runs the filter lets through."""
+        query = self._select(Run).where(*which.conditions())
+        return self.session.scalar(query.with_only_columns(func.count(), maintain_column_froms=True)) or 0
+
+    def page(self, limit: int, cursor: str | None, which: RunFilter | None = None) -> list[RunView]:
+        """Newest first, from below the id `cursor` (or oldest first, from above)."""
         which = which or RunFilter()
         query = self._select(Run).where(*which.conditions())
-        total = self.session.scalar(query.with_only_columns(func.count(), maintain_column_froms=True)) or 0
         if cursor:
             query = query.where(Run.id > cursor if which.oldest_first else Run.id < cursor)
         query = query.order_by(Run.id if which.oldest_first else Run.id.desc())
-        return self._with_tasks(self.session.scalars(query.limit(limit)).all()), total
+        return self._with_tasks(self.session.scalars(query.limit(limit)).all())
 
     def label(self, key: str, name: str | None, tags: Sequence[str] | None, pinned: bool | None) -> None:
         """Change what is given."""

@@ -69,6 +69,8 @@ class Row:
     overrides: dict[str, Any]
     summary: str | None
     seconds: float | None
+    figures: str | None = None
+    """What is kept of the summary for tables (store/figures.py)."""
 
 
 class StudyRepository(Scoped):
@@ -149,14 +151,16 @@ class StudyRepository(Scoped):
         rows = self.session.execute(query.with_only_columns(Run.id, Run.study_index))
         return [(row[0], row[1]) for row in rows]
 
-    def rows(self, key: str, after: int = -1, limit: int | None = None) -> Iterator[Row]:
-        """Its runs with their summaries, one at a time, in their order."""
+    def rows(self, key: str, after: int = -1, limit: int | None = None, whole: bool = False) -> Iterator[Row]:
+        """Its runs in their order, one at a time, with what is kept of their summaries; with the summaries themselves
+        where nothing is kept, or they are wanted as a `whole`."""
         spent = select(func.sum(Task.seconds)).where(Task.run_id == Run.id).scalar_subquery()
-        columns = (Run.id, Run.study_index, Run.state, Run.reason, Run.overrides, Run.summary, spent)
+        summary = Run.summary if whole else case((Run.figures.is_(None), Run.summary))
+        columns = (Run.id, Run.study_index, Run.state, Run.reason, Run.overrides, summary, spent, Run.figures)
         query = self._runs(key).where(Run.study_index > after).order_by(Run.study_index).limit(limit)
         found = self.session.execute(query.with_only_columns(*columns).execution_options(yield_per=200))
-        for run_id, index, state, reason, overrides, summary, seconds in found:
-            yield Row(run_id, index, state, reason, overrides or {}, summary, seconds)
+        for run_id, index, state, reason, overrides, text, seconds, figures in found:
+            yield Row(run_id, index, state, reason, overrides or {}, text, seconds, figures)
 
     def cancel(self, key: str) -> int:
         """Queued runs end at once, running ones within a heartbeat; gives how many were active. ConflictError: none."""

@@ -6,6 +6,7 @@ is fenced by the attempt it claimed, so that a late worker changes nothing and l
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -18,9 +19,11 @@ from solver.results.part import Chunk
 from ..broker import RUNS
 from ..clock import clock, utc_now
 from ..errors import LostLeaseError
-from ..models import CANCELLED, CANCELLING, FAILED, QUEUED, RUNNING, SUCCEEDED, CaseVersion, DataSet, Run, Task
+from ..models import CANCELLED, CANCELLING, FAILED, QUEUED, RUNNING, SUCCEEDED, CaseVersion, DataSet, Project, Run, Task
 from ..sources import PinnedSource
 
+STATED = "wamit"
+"""In a case's text where it states conventions of WAMIT files."""
 NEXT_TRIES = 5
 EARLY = 5
 """Times max_attempts: how many attempts are made of a task whose workers lose their leases while they live."""
@@ -62,6 +65,8 @@ class Outcome:
     summary: str
     warnings: tuple[str, ...]
     solver_version: str | None
+    figures: str | None = None
+    """Of the summary, what tables show (store/figures.py)."""
 
 
 class TaskRepository:
@@ -76,11 +81,22 @@ class TaskRepository:
         return None if run is None else self._take(run, task_id, worker, lease, max_attempts)
 
     def claim_next(
-        self, queue: str, worker: str, lease: float, max_attempts: int, up_to: int | None = None
+        self,
+        queue: str,
+        worker: str,
+        lease: float,
+        max_attempts: int,
+        up_to: int | None = None,
+        most_running: int = 0,
     ) -> Ticket | None:
-        """The most urgent queued task, of equals that of the smallest turn; with `up_to`, none of a larger priority number."""
+        """The most urgent queued task, of equals that of the smallest turn; with `up_to`, none of a larger priority number.
+
+        most_running : a team with so many runs at work has no other begun (0: any number). Two workers that look at the
+        same time may begin one more each.
+        """
+        full = self._full(most_running) if most_running else []
         for _ in range(NEXT_TRIES):
-            found = self._most_urgent(queue, up_to, skip_locked=True) or self._most_urgent(queue, up_to)
+            found = self._most_urgent(queue, up_to, full, skip_locked=True) or self._most_urgent(queue, up_to, full)
             if found is None:
                 return None
             ticket = self._take(*found, worker, lease, max_attempts)
@@ -88,7 +104,15 @@ class TaskRepository:
                 return ticket
         return None
 
-    def _most_urgent(self, queue: str, up_to: int | None, skip_locked: bool = False) -> tuple[Run, str] | None:
+    def _full(self, most_running: int) -> Sequence[str]:
+        """Projects of the teams that have so many runs at work."""
+        at_work = select(Project.team_id).join(Run, Run.project_id == Project.id).where(Run.state == RUNNING)
+        teams = at_work.group_by(Project.team_id).having(func.count() >= most_running)
+        return self.session.scalars(select(Project.id).where(Project.team_id.in_(teams))).all()
+
+    def _most_urgent(
+        self, queue: str, up_to: int | None, full: Sequence[str], skip_locked: bool = False
+    ) -> tuple[Run, str] | None:
         query = (
             select(Run, Task.id)
             .join(Task, Task.run_id == Run.id)
@@ -98,6 +122,8 @@ class TaskRepository:
             .with_for_update(of=Run, skip_locked=skip_locked)
             .execution_options(populate_existing=True)
         )
+        if full:
+            query = query.where((Run.state == RUNNING) | Run.project_id.not_in(full))
         if up_to is not None:
             query = query.where(Task.priority <= up_to)
         found = self.session.execute(query).one_or_none()
@@ -141,7 +167,7 @@ class TaskRepository:
             canonical=version.canonical,
             analyses=tuple(run.analyses),
             overrides=run.overrides,
-            data=PinnedSource(data),
+            data=PinnedSource(data, stated=STATED in version.canonical or STATED in json.dumps(run.overrides)),
             chunk=Chunk.from_dict(task.chunk),
             checkpoint=task.checkpoint,
             part=task.part,
@@ -194,7 +220,7 @@ class TaskRepository:
         self._fenced(ticket, ended)
         self.session.execute(update(Task).where(Task.run_id == run.id).values(part=None, checkpoint=None))
         run.state, run.reason, run.outcomes = outcome.state, outcome.reason, outcome.outcomes
-        run.summary, run.solver_version = outcome.summary, outcome.solver_version
+        run.summary, run.figures, run.solver_version = outcome.summary, outcome.figures, outcome.solver_version
         run.warnings = list(dict.fromkeys([*run.warnings, *outcome.warnings]))
         run.finished_at = utc_now()
         return True

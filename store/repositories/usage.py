@@ -8,14 +8,15 @@ from typing import Any
 from sqlalchemy import Select, func, select
 
 from ..hydrodynamics import Mesh
-from ..models import QUEUED, DataSet, Project, Run
+from ..models import CANCELLING, QUEUED, RUNNING, DataSet, Project, Run
 from .scoped import Scoped
 
 
 @dataclass(frozen=True)
 class Usage:
-    """Numbers of runs that wait, of all runs, of data sets and meshes, and the bytes of these."""
+    """Numbers of runs at work, of runs that wait, of all runs, of data sets and meshes, and the bytes of these."""
 
+    running: int
     queued: int
     runs: int
     files: int
@@ -30,7 +31,11 @@ class UsageRepository(Scoped):
         for model in (DataSet, Mesh):
             files += self._count(select(func.count()).select_from(model), model)
             size += self._count(select(func.coalesce(func.sum(model.size), 0)).select_from(model), model)
-        return Usage(self.queued(), self.runs(), files, size)
+        return Usage(self.running(), self.queued(), self.runs(), files, size)
+
+    def running(self) -> int:
+        at_work = select(func.count()).select_from(Run).where(Run.state.in_((RUNNING, CANCELLING)))
+        return self._count(at_work, Run)
 
     def queued(self) -> int:
         return self._count(select(func.count()).select_from(Run).where(Run.state == QUEUED), Run)

@@ -30,6 +30,7 @@ UNSCOPED = {
     "RecoveryRepository": "puts right what faults leave behind, of all projects",
     "HydrodynamicTasks": "a worker's",
     "QueueRepository": "counts of the queues, for operators",
+    "WatchRepository": "marks of runs that listeners were let into; what has changed is asked for with their scope",
     "TurnRepository": "sums over the queue, of all teams",
     "UsageRepository": "sums over the caller's team, of all its projects",
 }

@@ -179,3 +179,45 @@ def test_logs_name_their_run(capsys: pytest.CaptureFixture[str]) -> None:
     found = json.loads(first)
     assert (found["message"], found["run_id"], found["attempt"], found["level"]) == ("said", "r1", 2, "INFO")
     assert second.endswith("said run_id=r1 attempt=2")
+
+
+def test_requests_have_names(client: TestClient, caplog: pytest.LogCaptureFixture) -> None:
+    from api.request_ids import HEADER
+
+    made = client.get("/api/v1/runs").headers[HEADER]
+    assert made != client.get("/api/v1/runs").headers[HEADER]
+    assert client.get("/api/v1/runs/nobody", headers={HEADER: "proxy-7.1"}).headers[HEADER] == "proxy-7.1"
+    for strange in ("a b", "x" * 65, "<script>", ""):
+        assert client.get("/healthz", headers={HEADER: strange}).headers[HEADER] != strange
+
+
+def test_logs_name_the_request(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A fault inside of ours: the answer's id is that in the log, also from a thread."""
+    from api.request_ids import HEADER
+
+    seen: list[str] = []
+
+    class Notes(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            seen.append(getattr(record, "about", ""))
+
+    handler = Notes()
+    handler.addFilter(logs._Names(as_fields=False))
+    logging.getLogger("api.errors").addHandler(handler)
+
+    def away(*_: Any, **__: Any) -> None:
+        raise OperationalError("SELECT", {}, Exception("away"))
+
+    monkeypatch.setattr("store.repositories.runs.RunRepository.page", away)
+    answer = client.get("/api/v1/runs")
+    logging.getLogger("api.errors").removeHandler(handler)
+    assert answer.status_code == 503
+    assert seen == [f" request_id={answer.headers[HEADER]}"]
+
+
+@pytest.mark.parametrize("letter", ["\u202e", "\u2066", "\u200f", "\x85", "\ufeff"])
+def test_names_do_not_turn_direction(client: TestClient, letter: str) -> None:
+    answer = client.post("/api/v1/runs", json={"case": a_case("a"), "name": f"run {letter}gpj.exe"})
+    assert answer.status_code == 422, answer.text
+    assert answer.json()["errors"][0]["field"] == "name"
+    assert client.post("/api/v1/cases", json=a_case(f"case {letter}")).status_code == 422

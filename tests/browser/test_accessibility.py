@@ -94,7 +94,7 @@ def test_shared_study_data_and_teams(served: Watch) -> None:
           let run = await ask('/runs', {yaml: text, analyses});
           const grid = {'/line_types/riser/EA': [4e8, 5e8, 6e8]};
           let study = await ask('/studies', {name: 'Stiffness', yaml: text, analyses, grid});
-          const busy = () => ask('/runs?state=queued,running&limit=1');
+          const busy = () => ask('/runs?state=queued,running&limit=1&total=true');
           while ((await busy()).total) await new Promise((done) => setTimeout(done, 300));
           const share = await ask('/shares', {run_ids: [run.id]});
           const sets = await ask('/data-sets');

@@ -27,7 +27,7 @@ def insert(database: Database, name: str) -> str:
 
 def names(database: Database) -> set[str]:
     with database.read() as session:
-        return {view.run.case_name for view in RunRepository(session, Scope()).page(10, None)[0]}
+        return {view.run.case_name for view in RunRepository(session, Scope()).page(10, None)}
 
 
 def test_what_was_saved_comes_back(database: Database, tmp_path: Path) -> None:

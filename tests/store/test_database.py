@@ -4,18 +4,24 @@ from __future__ import annotations
 
 import contextlib
 import time
+import uuid
+from pathlib import Path
 
 import pytest
-from sqlalchemy import create_engine, select, text
+from sqlalchemy import create_engine, event, select, text
 
+from store import migrations
 from store.database import IDLE_SECONDS, Database
-from store.models import Team
-from store.repositories import RunRepository, TaskRepository
+from store.models import DataSet, Team
+from store.repositories import DataSetRepository, RunRepository, TaskRepository
 from store.scope import Scope
+from store.sources import PinnedSource
 
+from .test_isolation import BARGE
 from .test_lifecycle import make, taken
 
 __all__ = ["make"]
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 on_sqlite = pytest.mark.parametrize("empty", ["sqlite"], indirect=True)
 on_postgresql = pytest.mark.parametrize(
     "empty", [pytest.param("postgresql", marks=pytest.mark.services)], indirect=True
@@ -123,3 +129,43 @@ def test_the_clock_of_a_statement_made_once_goes_on(database: Database, make) ->
     time.sleep(0.6)
     assert 0.2 <= first < 0.4 + (time.monotonic() - began - 0.6)
     assert left() >= first + 0.5
+
+
+def test_the_files_are_their_owners_alone(tmp_path: Path) -> None:
+    path = tmp_path / "new" / "slowdrift.db"
+    database = Database(f"sqlite:///{path}")
+    migrations.upgrade(database)
+    with database.write() as session:
+        session.execute(text("CREATE TABLE something (x INTEGER)"))
+    files = sorted(path.parent.glob("slowdrift.db*"))
+    assert len(files) >= 2  # and the write-ahead log
+    assert {file.stat().st_mode & 0o777 for file in files} == {0o600}
+    database.close()
+    path.chmod(0o644)  # one that an older version made
+    database = Database(f"sqlite:///{path}")
+    database.ping()
+    database.close()
+    assert path.stat().st_mode & 0o777 == 0o600
+
+
+def test_a_set_that_was_read_is_not_fetched_again(database: Database) -> None:
+    """Of 1 600 runs with a set of 50 MB each would fetch it anew."""
+    payload, scope = BARGE.read_bytes(), Scope()
+    asked: list[str] = []
+    event.listen(database.engine, "before_cursor_execute", lambda *given: asked.append(given[2]))
+    with database.write() as session:
+        row, _ = DataSetRepository(session, scope).save("barge", "barge.nc", 2 * uuid.uuid4().hex, payload, {})
+    for stated, fetched in ((False, 1), (False, 0), (True, 1)):
+        asked.clear()
+        with database.read() as session:
+            source = PinnedSource(session.get(DataSet, row.id), stated=stated)
+        assert source.open("barge").nbytes > 0
+        assert sum("payload" in statement for statement in asked) == fetched
+
+
+def test_a_case_that_states_no_conventions_is_known_by_its_text() -> None:
+    from solver.case import load_case
+    from store.repositories.tasks import STATED
+
+    text = (EXAMPLES / "fpso-2000m.yaml").read_text()
+    assert STATED not in load_case(text).canonical()

@@ -244,7 +244,7 @@ def test_nobody_sees_another_projects_rows(database: Database, make: Callable[..
     run_id, _ = make()
     stranger = Scope("t" * 32, "p" * 32)
     with database.read() as session:
-        assert RunRepository(session, stranger).page(10, None, None) == ([], 0)
+        assert RunRepository(session, stranger).page(10, None) == []
         for call in (RunRepository(session, stranger).get, RunRepository(session, stranger).summary):
             with pytest.raises(NotFoundError):
                 call(run_id)

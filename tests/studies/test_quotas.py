@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
@@ -11,7 +12,7 @@ from api.main import create_app
 from solver.results.part import Chunk
 from store.database import Database
 from store.models import Project, Run, Task, Team
-from store.repositories import CaseRepository, RunRepository
+from store.repositories import CaseRepository, RunRepository, TaskRepository
 from store.repositories.cases import NewCase
 from store.repositories.runs import Labels
 from store.repositories.usage import UsageRepository
@@ -144,3 +145,44 @@ def test_many_small_runs_of_one_user_leave_the_quick_places_to_others(database: 
         first.state = "running"
     assert queue(script) == 10
     assert queue(script) == 20
+
+
+# --- runs at work
+
+
+def test_a_team_has_so_many_runs_at_work(database: Database) -> None:
+    here, there = Scope(), Scope(team_id="a" * 32, project_id="b" * 32)
+    with database.write() as session:
+        session.add(Team(id=there.team_id, name="another"))
+        session.flush()
+        session.add(Project(id=there.project_id, team_id=there.team_id, name="theirs"))
+        session.flush()
+        for scope, runs in ((here, 4), (there, 1)):
+            version, _ = CaseRepository(session, scope).save(NewCase("c", "h" * 64, "{}", "x: 1"))
+            for _ in range(runs):
+                chunks = [Chunk("time", (k, k + 1), 1.0) for k in range(2)]
+                RunRepository(session, scope).create(version, ["statics"], chunks)
+
+    def claimed(most: int) -> str | None:
+        with database.write() as session:
+            ticket = TaskRepository(session).claim_next("runs", "w", 60.0, 3, most_running=most)
+            return None if ticket is None else session.get_one(Run, ticket.run_id).project_id
+
+    found = [claimed(2) for _ in range(7)]  # two runs of two tasks each, and the other team's one
+    assert Counter(found) == {here.project_id: 4, there.project_id: 2, None: 1}
+    assert found[-1] is None  # two more runs wait
+    with database.read() as session:
+        assert UsageRepository(session, here).of_team().running == 2
+    assert claimed(0) == here.project_id
+
+
+def test_what_was_refused_is_shown(small: TestClient) -> None:
+    study(small, 4)
+    before = small.get("/api/v1/quota").json()
+    assert before["refused"] == []
+    assert "whoever runs the service" in before["who"]
+    study(small, 2)
+    refused = small.get("/api/v1/quota").json()["refused"]
+    assert len(refused) == 1
+    assert "4 queued runs of at most 5" in refused[0]["detail"]
+    assert {"running runs", "event streams"} <= set(shown(small))

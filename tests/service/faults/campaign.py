@@ -181,7 +181,9 @@ def _follow(client: httpx.Client, clients: Clients, tally: Tally, over: float) -
     states: Counter[str] = Counter()
     while time.monotonic() < limit:
         try:
-            answer = client.get("/api/v1/runs", params={"state": "queued,running,cancelling", "limit": 1})
+            answer = client.get(
+                "/api/v1/runs", params={"state": "queued,running,cancelling", "limit": 1, "total": True}
+            )
             if answer.status_code == 200 and answer.json()["total"] == 0:
                 tally.seconds_after = max(0.0, time.monotonic() - over)
                 return
@@ -195,7 +197,7 @@ def _follow(client: httpx.Client, clients: Clients, tally: Tally, over: float) -
 
 def _verify(client: httpx.Client, clients: Clients, tally: Tally, fault: Fault) -> None:
     """Every accepted run is there once, ended once, with its own numbers or with a reason."""
-    total = client.get("/api/v1/runs", params={"limit": 1}).json()["total"]
+    total = client.get("/api/v1/runs", params={"limit": 1, "total": True}).json()["total"]
     if total != tally.accepted + 1:  # and the one that warmed up
         tally.wrong.append(f"{total - 1} runs in the store for {tally.accepted} accepted")
     for run_id, number in clients.accepted.items():

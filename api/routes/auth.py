@@ -13,6 +13,7 @@ from ..access import Principal, PrincipalDep, get_principal, needs
 from ..attempts import Attempts
 from ..context import Context, ContextDep
 from ..guard import COOKIE, SECURE_COOKIE, session_token
+from ..known_browsers import DAYS, KNOWN, SECURE_KNOWN, known_browser, known_value
 from ..people_schemas import (
     AuthInfo,
     KeyList,
@@ -47,12 +48,22 @@ def is_secure(context: Context, request: Request) -> bool:
     return request.url.scheme == "https" or context.settings.public_url.startswith("https:")
 
 
-def give_session(context: Context, request: Request, response: Response, token: str) -> None:
-    """The cookie: not for scripts, not sent from other sites' pages, over https only where we are reached by it."""
+def browser_of(request: Request) -> service.Browser:
+    headers = request.headers
+    return service.Browser(address_of(request), headers.get("user-agent", ""), headers.get("cookie", ""))
+
+
+def give_session(context: Context, request: Request, response: Response, token: str, user_id: str) -> None:
+    """The cookies of the session, and of a browser that the account knows from now on: not for scripts, not sent from
+    other sites' pages, over https only where we are reached by it."""
     secure = is_secure(context, request)
     seconds = int(context.settings.session_hours * 3600)
     name = SECURE_COOKIE if secure else COOKIE
     response.set_cookie(name, token, max_age=seconds, path="/", secure=secure, httponly=True, samesite="lax")
+    if known_browser(request.headers.get("cookie", ""), user_id, context.secret) is None:
+        name, value = SECURE_KNOWN if secure else KNOWN, known_value(user_id, context.secret)
+        seconds = DAYS * 86_400
+        response.set_cookie(name, value, max_age=seconds, path="/", secure=secure, httponly=True, samesite="lax")
 
 
 def whole_me(context: Context, user_id: str, token: str) -> Me:
@@ -81,9 +92,8 @@ def sign_in(
     context: ContextDep, attempts: AttemptsDep, request: Request, response: Response, body: SignInRequest
 ) -> Me:
     """Begins a new session, whatever cookie the browser came with."""
-    agent, old = request.headers.get("user-agent", ""), session_of(request)
-    token, user = service.sign_in(context, attempts, body.email, body.password, address_of(request), agent, old)
-    give_session(context, request, response, token)
+    token, user = service.sign_in(context, attempts, body.email, body.password, browser_of(request))
+    give_session(context, request, response, token, user.id)
     return whole_me(context, user.id, token)
 
 

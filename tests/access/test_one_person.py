@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-from fastapi.testclient import TestClient
 
 from api import doorkeeper
 from api.main import create_app
@@ -13,7 +12,7 @@ from store.database import Database
 from store.models import DEFAULT_PROJECT, DEFAULT_TEAM
 from store.repositories.accounts import AccountRepository
 from store.settings import Settings
-from tests.api.conftest import service_settings  # noqa: F401  (fixture)
+from tests.api.conftest import TestClient, service_settings  # noqa: F401  (fixture)
 from tests.service.running import a_case
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from datetime import timedelta
 
 import pytest
-from fastapi.testclient import TestClient
 from sqlalchemy import select, update
 
 from api.attempts import Attempts
@@ -16,6 +15,7 @@ from store.people import SignIn
 from store.settings import Settings
 from store.tokens import SESSION, csrf_token, digest, is_token, new_token
 from tests.access.conftest import ORIGIN, PASSWORD, World
+from tests.api.conftest import TestClient
 from tests.service.conftest import REDIS, need
 
 SIGN_IN = "/api/v1/auth/sign-in"

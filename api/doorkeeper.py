@@ -105,7 +105,7 @@ class Doorkeeper:
             return None
         row, user, homes = found
         self._touch(row)
-        return Principal("session", user.email, user, row.id, None, row.project_id, homes)
+        return Principal("session", user.email, user, row.id, None, row.project_id, homes, row.by_provider)
 
     def _touch(self, row: SignIn | ApiKey) -> None:
         if stale(row):

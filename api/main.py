@@ -25,6 +25,7 @@ from .doorkeeper import Doorkeeper
 from .etag import ETags
 from .guard import COOKIE, Guard
 from .metrics import Meter, Metrics, ServiceState
+from .oidc_provider import Provider
 from .rates import Rates
 from .routes import (
     auth,
@@ -37,6 +38,7 @@ from .routes import (
     hydrodynamics,
     imports,
     moordyn,
+    oidc,
     queue,
     runs,
     shares,
@@ -101,6 +103,7 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
     app.state.context = context
     app.state.health = checks
     app.state.attempts = Attempts(settings)
+    app.state.oidc = Provider(settings) if settings.oidc_issuer else None
     errors.install(app)
     app.state.metrics = metrics
     app.add_middleware(ETags)
@@ -123,6 +126,7 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
         hydrodynamics,
         imports,
         moordyn,
+        oidc,
         queue,
         shares,
         teams,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Request, Response
@@ -79,11 +80,12 @@ AttemptsDep = Annotated[Attempts, Depends(get_attempts)]
 
 @router.get("/auth")
 @needs("open")
-def get_auth(request: Request) -> AuthInfo:
+def get_auth(context: ContextDep, request: Request) -> AuthInfo:
     """Whether people sign in here, and whether the caller has."""
     principal = get_principal(request)
     local = principal is not None and principal.kind == "local"
-    return AuthInfo(accounts=not local, signed_in=principal is not None and not local)
+    provider = context.settings.oidc_name if context.settings.oidc_issuer and not local else None
+    return AuthInfo(accounts=not local, signed_in=principal is not None and not local, provider=provider)
 
 
 @router.post("/auth/sign-in", responses=problems(401, 409, 429))
@@ -119,7 +121,7 @@ def change_me(context: ContextDep, principal: PrincipalDep, request: Request, ch
     with context.database.read() as session:
         user = AccountRepository(session).get(service.account_of(principal).id)
     home = change.project_id or principal.home
-    changed = Principal("session", principal.actor, user, principal.credential_id, None, home, principal.homes)
+    changed = replace(principal, user=user, home=home)
     return service.me(context, changed, session_of(request))
 
 

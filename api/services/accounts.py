@@ -73,14 +73,14 @@ def note(user: User) -> None:
         act.actor, act.user_id = user.email, user.id
 
 
-def open_session(context: Context, unit: Unit, user_id: str, browser: Browser) -> str:
+def open_session(context: Context, unit: Unit, user_id: str, browser: Browser, by_provider: bool = False) -> str:
     """A new session's token; the session that the browser came with ends."""
     token = new_token(SESSION)
     accounts = AccountRepository(unit.session)
     if browser.session:
         accounts.sign_out(digest(browser.session, context.secret))
     expires_at = utc_now() + timedelta(hours=context.settings.session_hours)
-    accounts.sign_in(user_id, digest(token, context.secret), browser.agent, expires_at)
+    accounts.sign_in(user_id, digest(token, context.secret), browser.agent, expires_at, by_provider)
     return token
 
 
@@ -116,6 +116,7 @@ def me(context: Context, principal: Principal, session: str) -> Me:
         home=HomeInfo.model_validate(home) if home else None,
         homes=[HomeInfo.model_validate(each) for each in homes],
         key_scope=principal.key_scope,  # type: ignore[arg-type]
+        by_provider=principal.by_provider,
         csrf_token=csrf_token(session) if principal.kind == "session" else None,
     )
 

@@ -73,7 +73,11 @@ def test_a_proxy_on_this_machine_opens_nothing(service_settings: Settings) -> No
         assert "slowdrift user add" in answer.json()["detail"]
         assert client.post("/api/v1/runs", json={}, headers=PROXIED).status_code == 401
         assert client.get("/metrics", headers=PROXIED).status_code == 404
-        assert client.get("/api/v1/auth", headers=PROXIED).json() == {"accounts": True, "signed_in": False}
+        assert client.get("/api/v1/auth", headers=PROXIED).json() == {
+            "accounts": True,
+            "signed_in": False,
+            "provider": None,
+        }
         assert client.get("/healthz", headers=PROXIED).status_code == 200
         assert client.get("/api/v1/runs").status_code == 200  # and the person here goes on
 

@@ -24,7 +24,7 @@ def alone(service_settings: Settings, monkeypatch: pytest.MonkeyPatch) -> Iterat
 
 
 def test_everything_is_open_to_this_machine(alone: TestClient) -> None:
-    assert alone.get("/api/v1/auth").json() == {"accounts": False, "signed_in": False}
+    assert alone.get("/api/v1/auth").json() == {"accounts": False, "signed_in": False, "provider": None}
     me = alone.get("/api/v1/me").json()
     assert (me["mode"], me["by"], me["user"]) == ("one-person", "local", None)
     assert (me["home"]["team_id"], me["home"]["project_id"]) == (DEFAULT_TEAM, DEFAULT_PROJECT)
@@ -59,4 +59,4 @@ def test_the_first_account_locks_a_running_service(alone: TestClient, service_se
         AccountRepository(session).add("ada@x.org", "Ada", None, True)
     database.close()
     assert alone.get("/api/v1/runs").status_code == 401
-    assert alone.get("/api/v1/auth").json() == {"accounts": True, "signed_in": False}
+    assert alone.get("/api/v1/auth").json() == {"accounts": True, "signed_in": False, "provider": None}

@@ -34,11 +34,11 @@ def enter(client: TestClient, name: str = "editor") -> str:
 
 def test_the_way_in_and_out(world: World) -> None:
     client = world.client(**ORIGIN)
-    assert client.get("/api/v1/auth").json() == {"accounts": True, "signed_in": False}
+    assert client.get("/api/v1/auth").json() == {"accounts": True, "signed_in": False, "provider": None}
     answer = client.post(SIGN_IN, json={"email": "  Editor@X.org ", "password": PASSWORD})
     assert answer.json()["user"]["email"] == "editor@x.org"
     assert answer.json()["home"]["role"] == "editor"
-    assert client.get("/api/v1/auth").json() == {"accounts": True, "signed_in": True}
+    assert client.get("/api/v1/auth").json() == {"accounts": True, "signed_in": True, "provider": None}
     me = client.get("/api/v1/me").json()
     assert (me["mode"], me["by"], me["csrf_token"]) == ("accounts", "session", answer.json()["csrf_token"])
     token = client.cookies[COOKIE]

@@ -8,7 +8,6 @@ import os
 import shutil
 from dataclasses import dataclass
 from typing import Any
-from urllib.parse import urlsplit
 
 from store.settings import Settings
 
@@ -122,8 +121,6 @@ def _said(options: argparse.Namespace) -> dict[str, str]:
     said = {}
     if not is_loopback(options.host):
         said["SLOWDRIFT_ALLOWED_HOSTS"] = os.environ.get("SLOWDRIFT_ALLOWED_HOSTS") or "*"
-    elif options.public_url and not os.environ.get("SLOWDRIFT_ALLOWED_HOSTS"):
-        said["SLOWDRIFT_ALLOWED_HOSTS"] = urlsplit(options.public_url).hostname or ""
     if options.allow_no_login:
         said["SLOWDRIFT_ALLOW_NO_LOGIN"] = "true"
     if options.public_url is not None:

@@ -7,6 +7,7 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Literal
+from urllib.parse import urlsplit
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
@@ -169,4 +170,7 @@ class Settings(BaseModel):
 
     @property
     def hosts(self) -> list[str]:
-        return [*LOOPBACK, *(host.strip() for host in self.allowed_hosts.split(",") if host.strip())]
+        """Names to which the API answers: this machine's, the public one, and those that are set."""
+        public = urlsplit(self.public_url).hostname
+        named = [host.strip() for host in self.allowed_hosts.split(",") if host.strip()]
+        return [*LOOPBACK, *([public] if public else []), *named]

@@ -131,7 +131,6 @@ def proxied(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     assert checked.returncode == 0, checked.stderr
     settings = Settings(
         data_dir=folder / "data",
-        allowed_hosts=NAME,
         public_url=f"https://{NAME}:{https}",
         forwarded_allow_ips="127.0.0.1",
         queue_prefix=f"proxies_{request.param}",

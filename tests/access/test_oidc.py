@@ -31,21 +31,27 @@ START, CALLBACK = "/api/v1/auth/oidc/start", "/api/v1/auth/oidc/callback"
 SECRET = "a secret of the test's own"
 
 
-@pytest.fixture(scope="module")
-def issuer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """oidc-provider from npm, run by node."""
+@contextmanager
+def provider(folder: Path, public: str) -> Iterator[str]:
+    """oidc-provider from npm, run by node, for a service at the public address; its issuer."""
     script = npm("oidc-provider").parents[1] / "provider.mjs"
     if not shutil.which("node"):
         missing("no node")
-    port, log = free_port(), tmp_path_factory.mktemp("provider") / "log"
+    port, log = free_port(), folder / "provider.log"
     with log.open("w") as out:
-        command = ["node", str(script), str(port), PUBLIC + CALLBACK, f"{PUBLIC}/app/sign-in"]
+        command = ["node", str(script), str(port), public + CALLBACK, f"{public}/app/sign-in"]
         process = subprocess.Popen(command, stdout=out, stderr=out)
     wait_until(lambda: "listening" in log.read_text() or process.poll() is not None, 120)
     assert process.poll() is None, log.read_text()
     yield f"http://127.0.0.1:{port}"
     process.terminate()
     process.wait(30)
+
+
+@pytest.fixture(scope="module")
+def issuer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    with provider(tmp_path_factory.mktemp("provider"), PUBLIC) as made:
+        yield made
 
 
 @contextmanager

@@ -1,5 +1,7 @@
 # Slowdrift in one image: `slowdrift serve`, `slowdrift worker`, `slowdrift migrate` are its commands (docker-compose.yml).
-FROM python:3.12-slim AS build
+# Pinned by tag and digest, see docker-compose.yml; renew both together.
+ARG BASE=python:3.12.11-slim-bookworm@sha256:519591d6871b7bc437060736b9f7456b8731f1499a57e22e6c285135ae657bf7
+FROM ${BASE} AS build
 WORKDIR /src
 COPY pyproject.toml README.md requirements.lock ./
 COPY solver solver
@@ -13,7 +15,7 @@ COPY examples examples
 RUN python -m venv /opt/slowdrift && /opt/slowdrift/bin/pip install --no-cache-dir -r requirements.lock && \
     /opt/slowdrift/bin/pip install --no-cache-dir --no-deps --no-build-isolation .
 
-FROM python:3.12-slim
+FROM ${BASE}
 RUN useradd --create-home --uid 10001 slowdrift && install -d -o slowdrift /data /cache
 COPY --from=build /opt/slowdrift /opt/slowdrift
 ENV PATH=/opt/slowdrift/bin:$PATH \
@@ -27,4 +29,4 @@ USER slowdrift
 RUN python -c "import solver.run as run; run.warm_up(); run.warm_up_time_domain()"
 WORKDIR /data
 EXPOSE 8000
-CMD ["slowdrift", "serve", "--host", "0.0.0.0", "--allow-no-login", "--log", "here"]
+CMD ["slowdrift", "serve", "--host", "0.0.0.0", "--setup", "--log", "here"]

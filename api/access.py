@@ -65,6 +65,8 @@ class Principal:
     home: str | None = None
     """The project to work in where the request names none."""
     homes: tuple[Home, ...] = ()
+    by_provider: bool = False
+    """Signed in by an OpenID Connect provider."""
 
     @property
     def is_admin(self) -> bool:

@@ -18,12 +18,17 @@ from .rates import seconds_to
 ONE_ACCOUNT_ONE_ADDRESS = "5 per minute"
 ONE_ADDRESS = "60 per 10 minutes"
 ONE_ACCOUNT = "50 per hour"
-"""Looser, since strangers can use it up and so keep the account's owner out."""
+"""Looser, since strangers can use it up. It does not count for browsers with which the owner has signed in before."""
+ONE_KNOWN_BROWSER = ("5 per minute", "50 per hour")
+"""Of one account from a browser that it knows, or from a session: counted apart from what strangers try."""
 log = logging.getLogger(__name__)
 
 
 class Attempts:
-    """Every try counts when it begins, so that many at once count too; one that succeeds is forgiven."""
+    """Every try counts when it begins, so that many at once count too; one that succeeds is forgiven.
+
+    `known`: the number of a browser that this account knows (api/known_browsers.py), or of one's session.
+    """
 
     def __init__(self, settings: Settings):
         self._own = MovingWindowRateLimiter(MemoryStorage())
@@ -34,22 +39,31 @@ class Attempts:
             storage = storage_from_string(settings.broker_url, wrap_exceptions=True, **options)
             self._shared = MovingWindowRateLimiter(cast(Storage, storage))
 
-    def begin(self, account: str, address: str) -> None:
+    def begin(self, account: str, address: str, known: str | None = None) -> None:
         """Raises TooManyError."""
-        for item, keys in self._items(account, address):
+        self._count(self._items(account, address, known))
+
+    def begin_from(self, address: str) -> None:
+        """An attempt that names no account. Raises TooManyError."""
+        self._count([(parse(ONE_ADDRESS), (self._prefix, "address", address))])
+
+    def _count(self, items: list[tuple[RateLimitItem, tuple[str, ...]]]) -> None:
+        for item, keys in items:
             if not self._hit(item, keys):
                 wait = seconds_to(self._reset(item, keys))
                 raise TooManyError(f"Too many attempts; try again in {wait} s.", wait)
 
-    def forgive(self, account: str, address: str) -> None:
-        item, keys = self._items(account, address)[0]
+    def forgive(self, account: str, address: str, known: str | None = None) -> None:
+        item, keys = self._items(account, address, known)[0]
         for limiter in (self._own, self._shared):
             try:
                 limiter.clear(item, *keys)
             except StorageError as error:
                 log.warning("Attempts cannot be forgotten: %s", error)
 
-    def _items(self, account: str, address: str) -> list[tuple[RateLimitItem, tuple[str, ...]]]:
+    def _items(self, account: str, address: str, known: str | None) -> list[tuple[RateLimitItem, tuple[str, ...]]]:
+        if known is not None:
+            return [(parse(item), (self._prefix, "known", account, known)) for item in ONE_KNOWN_BROWSER]
         return [
             (parse(ONE_ACCOUNT_ONE_ADDRESS), (self._prefix, "pair", account, address)),
             (parse(ONE_ADDRESS), (self._prefix, "address", address)),

@@ -1,6 +1,7 @@
 """Asks every request under /api/v1 who it comes from, before a byte of its body is read.
 
-As long as there is no account (and the setting `accounts` is auto), it is the one person who has this machine.
+As long as there is no account (and the setting `accounts` is auto), it is the one person who has this machine: requests
+that come from elsewhere, or through a proxy, are refused then (api/nearness.py).
 """
 
 from __future__ import annotations
@@ -20,11 +21,17 @@ from store.tokens import KEY, SESSION, digest, is_token
 from .access import Principal
 from .context import Acting, Context, acting
 from .guard import problem, session_token
+from .nearness import may_go_unnamed
 
 OPEN = ("/auth", "/invitations/", "/shared/", "/openapi.json")
 """Under the base: what strangers may ask. Every other address answers 401 before anything is looked up."""
 ASK_AGAIN = 2.0
 LOCAL = Principal("local", "this machine")
+SIGN_IN = "Sign in, or send a key as `Authorization: Bearer …`."
+NO_ACCOUNT = (
+    "There are no accounts yet, and this request comes from another machine or through a proxy. Make an account with "
+    "`slowdrift user add`, or start the service with --setup; with --allow-no-login it obeys everybody who reaches it."
+)
 log = logging.getLogger(__name__)
 
 
@@ -39,12 +46,16 @@ class Doorkeeper:
             return await self.app(scope, receive, send)
         connection = HTTPConnection(scope)
         try:
-            principal = LOCAL if self._alone() else await run_in_threadpool(self._recognise, connection)
+            unnamed = not self._accounts and (self._alone() or not await run_in_threadpool(self.accounts_on))
+            if unnamed:
+                principal = LOCAL if may_go_unnamed(self.context.settings, scope) else None
+            else:
+                principal = await run_in_threadpool(self._recognise, connection)
         except SQLAlchemyError:
             log.exception("Nobody can be recognised: the database does not answer")
             return await problem(503, "unavailable", "The database cannot be reached.")(scope, receive, send)
         if principal is None and not scope["path"].removeprefix(self.base).startswith(OPEN):
-            answer = problem(401, "sign-in-required", "Sign in, or send a key as `Authorization: Bearer …`.")
+            answer = problem(401, "sign-in-required", NO_ACCOUNT if unnamed else SIGN_IN)
             answer.headers["www-authenticate"] = "Bearer"
             return await answer(scope, receive, send)
         scope.setdefault("state", {})["principal"] = principal
@@ -68,8 +79,6 @@ class Doorkeeper:
 
     def _recognise(self, connection: HTTPConnection) -> Principal | None:
         """The key in the Authorization header if there is one, else the session in the cookie."""
-        if not self.accounts_on():
-            return LOCAL
         kind, _, value = connection.headers.get("authorization", "").partition(" ")
         if kind.lower() == "bearer":
             return self._key(value.strip())
@@ -96,7 +105,7 @@ class Doorkeeper:
             return None
         row, user, homes = found
         self._touch(row)
-        return Principal("session", user.email, user, row.id, None, row.project_id, homes)
+        return Principal("session", user.email, user, row.id, None, row.project_id, homes, row.by_provider)
 
     def _touch(self, row: SignIn | ApiKey) -> None:
         if stale(row):

@@ -69,7 +69,7 @@ class Guard:
 
     def _refusal(self, method: str, headers: Headers) -> Response | None:
         host = headers.get("host", "")
-        if "*" not in self.allowed and _name(host) not in self.allowed:
+        if "*" not in self.allowed and host_name(host) not in self.allowed:
             return problem(400, "host-unknown", "This server does not answer to that name.")
         origin = headers.get("origin")
         if method not in SAFE and origin is not None and _netloc(origin) != host:
@@ -100,7 +100,8 @@ def _null_byte(scope: Scope) -> Response | None:
     return None
 
 
-def _name(host: str) -> str:
+def host_name(host: str) -> str:
+    """The name in a Host header, without the port; empty where it is malformed."""
     try:
         return urlsplit(f"//{host}").hostname or ""
     except ValueError:

@@ -25,6 +25,7 @@ from .doorkeeper import Doorkeeper
 from .etag import ETags
 from .guard import COOKIE, Guard
 from .metrics import Meter, Metrics, ServiceState
+from .oidc_provider import Provider
 from .rates import Rates
 from .refusals import Refusals
 from .request_ids import RequestIds
@@ -39,6 +40,7 @@ from .routes import (
     hydrodynamics,
     imports,
     moordyn,
+    oidc,
     queue,
     runs,
     shares,
@@ -109,6 +111,7 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
     app.state.refusals = Refusals()
     app.state.streams, app.state.watcher = streams, Watcher(context.database)
     app.state.attempts = Attempts(settings)
+    app.state.oidc = Provider(settings) if settings.oidc_issuer else None
     errors.install(app)
     app.state.metrics = metrics
     app.add_middleware(ETags)
@@ -131,6 +134,7 @@ def create_app(settings: Settings | None = None, reconcile: bool = True) -> Fast
         hydrodynamics,
         imports,
         moordyn,
+        oidc,
         queue,
         shares,
         teams,

@@ -46,6 +46,9 @@ class Request(BaseModel):
 class AuthInfo(BaseModel):
     accounts: bool = Field(description="false: nobody signs in here")
     signed_in: bool
+    provider: str | None = Field(
+        None, description="name of the OpenID Connect provider by which people may sign in, see /auth/oidc/start"
+    )
 
 
 class SignInRequest(Request):
@@ -93,6 +96,7 @@ class Me(BaseModel):
     home: HomeInfo | None = Field(description="where requests work that name no project")
     homes: list[HomeInfo]
     key_scope: KeyScope | None = None
+    by_provider: bool = Field(False, description="signed in by the OpenID Connect provider")
     csrf_token: str | None = Field(None, description="for X-CSRF-Token, where a client sends no Origin")
 
 

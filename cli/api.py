@@ -27,7 +27,6 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def run_api(options: argparse.Namespace) -> int:
     import faulthandler
     import gc
-    import os
     import socket
     import sys
 
@@ -53,7 +52,7 @@ def run_api(options: argparse.Namespace) -> int:
     connections = Connections(
         most=most,
         most_per_address=settings.max_connections_per_address,
-        trusted=trusted_by(os.environ.get("FORWARDED_ALLOW_IPS", "")),
+        trusted=trusted_by(settings.forwarded_allow_ips),
     )
     config = uvicorn.Config(
         app,
@@ -61,6 +60,8 @@ def run_api(options: argparse.Namespace) -> int:
         log_config=None,
         access_log=False,
         server_header=False,
+        proxy_headers=bool(settings.forwarded_allow_ips),  # believed from the proxies named, and from nobody else
+        forwarded_allow_ips=settings.forwarded_allow_ips,
         timeout_graceful_shutdown=2,
         timeout_keep_alive=30,
     )

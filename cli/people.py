@@ -84,8 +84,16 @@ def make_link(session: Session, settings: Settings, days: int, **invitation: obj
 
 
 def read_secret_of(settings: Settings) -> bytes:
-    from store.tokens import read_secret
+    """The secret of the API. Raises RefusedError where a new one would be made beside a server's database: tokens made
+    with it would open nothing."""
+    from store.tokens import SECRET_FILE, read_secret
 
+    path = settings.data_dir / SECRET_FILE
+    if not settings.secret and not settings.database.startswith("sqlite") and not path.exists():
+        raise RefusedError(
+            f"SLOWDRIFT_SECRET is not set, and {path} does not exist: a key or link made with a new secret would open "
+            "nothing. Set SLOWDRIFT_SECRET to the secret of the API processes, or --data-dir to their data folder."
+        )
     try:
         return read_secret(settings)
     except (OSError, ValueError) as error:

@@ -25,6 +25,12 @@ NO_LOGIN = (
     "127.0.0.1; or say --allow-no-login where a network or proxy of yours keeps others out."
 )
 
+PROXY = (
+    "The settings name a proxy ({names}), and there are no accounts yet: whoever reaches the proxy could read and delete "
+    "everything. Make an account with `slowdrift user add EMAIL`, or say --setup for a link at which to make it; or say "
+    "--allow-no-login where a network or proxy of yours keeps others out."
+)
+
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser = commands.add_parser("serve", help="start the service")
@@ -42,6 +48,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--no-pages", action="store_true", help="REST only")
     parser.add_argument("--allow-no-login", action="store_true", help="serve other machines though nobody signs in")
+    parser.add_argument(
+        "--public-url", metavar="URL", help="where people reach the service, such as https://sd.example.org"
+    )
+    parser.add_argument(
+        "--forwarded-allow-ips", metavar="LIST", help="proxies whose forwarded headers are believed (default: none)"
+    )
     parser.add_argument("--setup", action="store_true", help="print a link at which to make the first account")
     parser.add_argument("--log", choices=("files", "here"), default="files", help="logs into the data folder, or here")
 
@@ -68,10 +80,7 @@ class Service:
 
 def prepare(options: argparse.Namespace) -> Service:
     """Migrate, register the bundled data, bind, start the children. Raises RefusedError."""
-    extra = {}
-    if not is_loopback(options.host):
-        extra["SLOWDRIFT_ALLOWED_HOSTS"] = os.environ.get("SLOWDRIFT_ALLOWED_HOSTS") or "*"
-    settings = read_settings(options.data_dir, extra)
+    settings = read_settings(options.data_dir, _said(options))
 
     from store.bundled import register_bundled
     from store.database import Database
@@ -88,8 +97,8 @@ def prepare(options: argparse.Namespace) -> Service:
         raise RefusedError(f"the database cannot be prepared: {type(error).__name__}: {error}") from None
     finally:
         database.close()
-    if not (known or options.setup or options.allow_no_login or is_loopback(options.host)):
-        raise RefusedError(NO_LOGIN.format(host=options.host))
+    if not (known or options.setup or settings.allow_no_login or settings.accounts == "on"):
+        _refuse_strangers(options, settings)
     if known or options.setup:
         settings = settings.model_copy(update={"accounts": "on"})
     listener = bind(options.host, options.port)
@@ -105,6 +114,29 @@ def prepare(options: argparse.Namespace) -> Service:
     url = f"http://{f'[{shown}]' if ':' in shown else shown}:{port}"
     setup = _setup_link(settings, url) if options.setup and not known else ""
     return Service(url, settings, supervisor, settings.accounts == "on", setup)
+
+
+def _said(options: argparse.Namespace) -> dict[str, str]:
+    """What options say, as variables."""
+    said = {}
+    if not is_loopback(options.host):
+        said["SLOWDRIFT_ALLOWED_HOSTS"] = os.environ.get("SLOWDRIFT_ALLOWED_HOSTS") or "*"
+    if options.allow_no_login:
+        said["SLOWDRIFT_ALLOW_NO_LOGIN"] = "true"
+    if options.public_url is not None:
+        said["SLOWDRIFT_PUBLIC_URL"] = options.public_url
+    if options.forwarded_allow_ips is not None:
+        said["SLOWDRIFT_FORWARDED_ALLOW_IPS"] = options.forwarded_allow_ips
+    return said
+
+
+def _refuse_strangers(options: argparse.Namespace, settings: Settings) -> None:
+    """Raises RefusedError where nobody has to sign in and others could reach the service."""
+    if not is_loopback(options.host):
+        raise RefusedError(NO_LOGIN.format(host=options.host))
+    if settings.behind_proxy:
+        names = [name for name in ("public_url", "forwarded_allow_ips") if getattr(settings, name)]
+        raise RefusedError(PROXY.format(names=", ".join(f"SLOWDRIFT_{name.upper()}" for name in names)))
 
 
 def _counted_together(settings: Settings, options: argparse.Namespace, port: int) -> dict[str, str]:
@@ -179,6 +211,7 @@ def compose_app(settings: Settings, port: int, pages: bool = True, first: bool =
 
     from api.guard import session_token
     from api.main import create_app
+    from api.nearness import MarkForwarded
     from store.tokens import csrf_token
 
     app = create_app(settings, reconcile=first)
@@ -201,6 +234,6 @@ def compose_app(settings: Settings, port: int, pages: bool = True, first: bool =
         environ["HTTP_X_CSRF_TOKEN"] = csrf_token(session) if session else ""
         return server(environ, start_response)
 
-    app.mount("/app", WSGIMiddleware(vouched, workers=10))  # type: ignore[arg-type]
+    app.mount("/app", MarkForwarded(WSGIMiddleware(vouched, workers=10)))  # type: ignore[arg-type]
     app.add_api_route("/", lambda: RedirectResponse("/app/"), include_in_schema=False)
     return app

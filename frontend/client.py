@@ -14,7 +14,8 @@ import httpx
 from frontend.errors import ApiError, unreachable
 
 API = "/api/v1"  # what the browser calls too, on the same origin
-FORWARDED = ("cookie", "x-csrf-token", "authorization", "accept-language")
+FORWARDED = ("cookie", "x-csrf-token", "authorization", "accept-language", "x-forwarded-for")
+# x-forwarded-for: so that the service does not take the caller for a program of its own machine
 # not Origin: the service judged it when the page called, and says so to us by the token (cli/serve.py)
 YAML = {"content-type": "application/yaml"}
 SHARE = "Slowdrift-Share"  # what a page opened by a share link sends with its callbacks (assets/a-net.js)

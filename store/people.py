@@ -59,9 +59,23 @@ class SignIn(Base):
     project_id: Mapped[str | None] = mapped_column(Id, ForeignKey("projects.id", ondelete="SET NULL"), default=None)
     """The project in which requests work that name none."""
     agent: Mapped[str] = mapped_column(String(200), default="")
+    by_provider: Mapped[bool] = mapped_column(default=False)
+    """Begun by an OpenID Connect provider's word, not by a password."""
     created_at: Mapped[datetime] = mapped_column(default=utc_now)
     last_used_at: Mapped[datetime] = mapped_column(default=utc_now)
     expires_at: Mapped[datetime]
+
+
+class Identity(Base):
+    """Whom an OpenID Connect provider means by a subject: one account has one subject at a provider."""
+
+    __tablename__ = "oidc_identities"
+    __table_args__ = (UniqueConstraint("issuer", "subject"), UniqueConstraint("issuer", "user_id"))
+    id: Mapped[str] = mapped_column(Id, primary_key=True, default=new_id)
+    issuer: Mapped[str] = mapped_column(String(500))
+    subject: Mapped[str] = mapped_column(String(255))
+    user_id: Mapped[str] = mapped_column(Id, ForeignKey("users.id"), index=True)
+    created_at: Mapped[datetime] = mapped_column(default=utc_now)
 
 
 class ApiKey(Base):

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import ipaddress
 import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Literal
+from urllib.parse import urlsplit
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from solver.outcome import SlowdriftError
 
@@ -72,6 +74,22 @@ class Settings(BaseModel):
     """How long one stays signed in."""
     public_url: str = Field("", pattern=r"^(https?://[^/]+)?/?$")
     """Where people reach the service, for links and secure cookies; empty: as the request came in."""
+    forwarded_allow_ips: str = ""
+    """Addresses and networks of proxies, with commas, whose X-Forwarded-For and -Proto are believed; empty: none."""
+    allow_no_login: bool = False
+    """Without accounts, obey requests of other machines and of proxies, too."""
+    oidc_issuer: str = Field("", pattern=r"^(https://[^/\s].*|http://(127\.0\.0\.1|localhost|\[::1\])(:\d+)?(/.*)?)?$")
+    """OpenID Connect provider by which people may sign in; empty: none. http only on this machine."""
+    oidc_client_id: str = ""
+    """Our name at the provider."""
+    oidc_client_secret: str = Field("", repr=False)
+    """Our password at the provider; empty for a public client, which PKCE protects alone."""
+    oidc_scopes: str = Field("openid email profile", pattern=r"^openid( [!#-\[\]-~]+)*$")
+    """What is asked of the provider; `email` is needed, since accounts are found by address."""
+    oidc_name: str = Field("your organisation", max_length=100)
+    """The provider's name on the button of the sign-in page."""
+    oidc_domains: str = ""
+    """Domains of e-mail addresses, with commas, whose people get an account at their first sign-in; empty: none."""
     rate_per_minute: int = Field(6000, ge=0)
     """Requests of one key, session or (of strangers) address in a minute; 0: any number."""
     max_connections: int = Field(5000, ge=10)
@@ -105,15 +123,39 @@ class Settings(BaseModel):
     solver: str = "solver.run"
     """Module with run_chunk and merge; tests put a fake there."""
 
+    @field_validator("forwarded_allow_ips")
+    @classmethod
+    def _are_networks(cls, names: str) -> str:
+        """`*` is refused: with it any caller could give itself any address."""
+        try:
+            for name in names.split(","):
+                ipaddress.ip_network(name.strip() or "127.0.0.1")
+        except ValueError:
+            text = f"{name.strip()!r} is no address and no network of a proxy, such as 127.0.0.1 or 10.0.0.0/24"
+            raise ValueError(text) from None
+        return names
+
+    @model_validator(mode="after")
+    def _is_a_whole_provider(self) -> Settings:
+        if self.oidc_issuer and not self.oidc_client_id:
+            raise ValueError("SLOWDRIFT_OIDC_ISSUER needs SLOWDRIFT_OIDC_CLIENT_ID")
+        if self.oidc_issuer and not self.public_url:
+            raise ValueError("SLOWDRIFT_OIDC_ISSUER needs SLOWDRIFT_PUBLIC_URL: the provider sends people back there")
+        return self
+
     @classmethod
     def from_env(cls, environ: Mapping[str, str] | None = None) -> Settings:
         environ = os.environ if environ is None else environ
         given = {key.removeprefix(PREFIX).lower(): value for key, value in environ.items() if key.startswith(PREFIX)}
+        given.setdefault("forwarded_allow_ips", environ.get("FORWARDED_ALLOW_IPS", ""))  # uvicorn's own name for it
         known = {key: value for key, value in given.items() if key in cls.model_fields and value != ""}
         try:
             return cls.model_validate(known)
         except ValidationError as error:
-            faults = [f"{PREFIX}{str(item['loc'][0]).upper()}: {item['msg']}" for item in error.errors()]
+            faults = [
+                ": ".join([*(f"{PREFIX}{str(n).upper()}" for n in one["loc"][:1]), one["msg"]])
+                for one in error.errors()
+            ]
             raise SettingsError("; ".join(faults)) from None
 
     def as_env(self) -> dict[str, str]:
@@ -130,5 +172,13 @@ class Settings(BaseModel):
         return url
 
     @property
+    def behind_proxy(self) -> bool:
+        """Whether requests reach the service through a proxy, by what was set."""
+        return bool(self.public_url or self.forwarded_allow_ips)
+
+    @property
     def hosts(self) -> list[str]:
-        return [*LOOPBACK, *(host.strip() for host in self.allowed_hosts.split(",") if host.strip())]
+        """Names to which the API answers: this machine's, the public one, and those that are set."""
+        public = urlsplit(self.public_url).hostname
+        named = [host.strip() for host in self.allowed_hosts.split(",") if host.strip()]
+        return [*LOOPBACK, *([public] if public else []), *named]

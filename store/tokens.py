@@ -18,6 +18,8 @@ from pathlib import Path
 from .settings import Settings
 
 SESSION, KEY, INVITATION, SHARE = "sds", "sdk", "sdi", "sdl"
+SECRET_FILE = "secret"
+"""In the data folder, where the setting `secret` is empty."""
 START = 10
 """How many characters of a key may be shown later, to tell keys apart."""
 _LENGTH = len("sdk_") + 43 + 6
@@ -48,7 +50,7 @@ def read_secret(settings: Settings) -> bytes:
     """The HMAC's key: the setting, or a file of the data folder that is made when there is none."""
     if settings.secret:
         return settings.secret.encode()
-    path = settings.data_dir / "secret"
+    path = settings.data_dir / SECRET_FILE
     try:
         return _kept(path)
     except FileNotFoundError:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Request, Response
@@ -13,6 +14,7 @@ from ..access import Principal, PrincipalDep, get_principal, needs
 from ..attempts import Attempts
 from ..context import Context, ContextDep
 from ..guard import COOKIE, SECURE_COOKIE, session_token
+from ..known_browsers import DAYS, KNOWN, SECURE_KNOWN, known_browser, known_value
 from ..people_schemas import (
     AuthInfo,
     KeyList,
@@ -47,12 +49,22 @@ def is_secure(context: Context, request: Request) -> bool:
     return request.url.scheme == "https" or context.settings.public_url.startswith("https:")
 
 
-def give_session(context: Context, request: Request, response: Response, token: str) -> None:
-    """The cookie: not for scripts, not sent from other sites' pages, over https only where we are reached by it."""
+def browser_of(request: Request) -> service.Browser:
+    headers = request.headers
+    return service.Browser(address_of(request), headers.get("user-agent", ""), headers.get("cookie", ""))
+
+
+def give_session(context: Context, request: Request, response: Response, token: str, user_id: str) -> None:
+    """The cookies of the session, and of a browser that the account knows from now on: not for scripts, not sent from
+    other sites' pages, over https only where we are reached by it."""
     secure = is_secure(context, request)
     seconds = int(context.settings.session_hours * 3600)
     name = SECURE_COOKIE if secure else COOKIE
     response.set_cookie(name, token, max_age=seconds, path="/", secure=secure, httponly=True, samesite="lax")
+    if known_browser(request.headers.get("cookie", ""), user_id, context.secret) is None:
+        name, value = SECURE_KNOWN if secure else KNOWN, known_value(user_id, context.secret)
+        seconds = DAYS * 86_400
+        response.set_cookie(name, value, max_age=seconds, path="/", secure=secure, httponly=True, samesite="lax")
 
 
 def whole_me(context: Context, user_id: str, token: str) -> Me:
@@ -68,11 +80,12 @@ AttemptsDep = Annotated[Attempts, Depends(get_attempts)]
 
 @router.get("/auth")
 @needs("open")
-def get_auth(request: Request) -> AuthInfo:
+def get_auth(context: ContextDep, request: Request) -> AuthInfo:
     """Whether people sign in here, and whether the caller has."""
     principal = get_principal(request)
     local = principal is not None and principal.kind == "local"
-    return AuthInfo(accounts=not local, signed_in=principal is not None and not local)
+    provider = context.settings.oidc_name if context.settings.oidc_issuer and not local else None
+    return AuthInfo(accounts=not local, signed_in=principal is not None and not local, provider=provider)
 
 
 @router.post("/auth/sign-in", responses=problems(401, 409, 429))
@@ -81,9 +94,8 @@ def sign_in(
     context: ContextDep, attempts: AttemptsDep, request: Request, response: Response, body: SignInRequest
 ) -> Me:
     """Begins a new session, whatever cookie the browser came with."""
-    agent, old = request.headers.get("user-agent", ""), session_of(request)
-    token, user = service.sign_in(context, attempts, body.email, body.password, address_of(request), agent, old)
-    give_session(context, request, response, token)
+    token, user = service.sign_in(context, attempts, body.email, body.password, browser_of(request))
+    give_session(context, request, response, token, user.id)
     return whole_me(context, user.id, token)
 
 
@@ -109,7 +121,7 @@ def change_me(context: ContextDep, principal: PrincipalDep, request: Request, ch
     with context.database.read() as session:
         user = AccountRepository(session).get(service.account_of(principal).id)
     home = change.project_id or principal.home
-    changed = Principal("session", principal.actor, user, principal.credential_id, None, home, principal.homes)
+    changed = replace(principal, user=user, home=home)
     return service.me(context, changed, session_of(request))
 
 

@@ -11,9 +11,9 @@ from prometheus_client import CONTENT_TYPE_LATEST
 
 from store.errors import NotFoundError
 from store.health import NOT_READY, Health
-from store.settings import LOOPBACK
 
 from ..context import ContextDep
+from ..nearness import is_local
 
 router = APIRouter(tags=["health"])
 LOOK_SECONDS = 0.01
@@ -27,13 +27,14 @@ async def healthz() -> dict[str, str]:
 
 @router.get("/metrics", include_in_schema=False)
 def metrics(request: Request, context: ContextDep) -> Response:
-    """For Prometheus. With the setting metrics_token for whoever knows it, else for this machine only."""
+    """For Prometheus. With the setting metrics_token for whoever knows it; else for this machine only, and for nobody
+    where the settings name a proxy."""
     token = context.settings.metrics_token
     if token:
         given = request.headers.get("authorization", "").removeprefix("Bearer ")
         allowed = hmac.compare_digest(given.encode(), token.encode())
     else:
-        allowed = request.client is None or request.client.host in (*LOOPBACK, "testclient")
+        allowed = not context.settings.behind_proxy and is_local(request.scope)
     if not allowed:
         raise NotFoundError("page", "metrics")
     return Response(request.app.state.metrics.text(), media_type=CONTENT_TYPE_LATEST)

@@ -32,7 +32,7 @@ from ..people_schemas import (
     TeamList,
 )
 from ..services import teams as service
-from .auth import give_session, session_of, whole_me
+from .auth import browser_of, give_session, whole_me
 from .common import Cursor, Key, Limit, problems
 
 router = APIRouter(tags=["teams"])
@@ -214,8 +214,7 @@ def accept_invitation(
     context: ContextDep, request: Request, response: Response, token: Key, body: Acceptance | None = None
 ) -> Me:
     """Signs in whoever accepts."""
-    agent, old = request.headers.get("user-agent", ""), session_of(request)
     given = body or Acceptance()
-    session, user = service.accept(context, token, given, get_principal(request), agent, old)
-    give_session(context, request, response, session)
+    session, user = service.accept(context, token, given, get_principal(request), browser_of(request))
+    give_session(context, request, response, session, user.id)
     return whole_me(context, user.id, session)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 from solver.outcome import CaseError, FieldError
@@ -18,34 +19,51 @@ from store.tokens import INVITATION, KEY, SESSION, START, csrf_token, digest, ne
 from ..access import Principal
 from ..attempts import Attempts
 from ..context import Context, Unit, acting
+from ..guard import session_token
+from ..known_browsers import known_browser
 from ..people_schemas import HomeInfo, KeyInfo, KeyRequest, Me, MeChange, UserChange, UserInfo, UserRequest
 
 RESET_DAYS = 3
 log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Browser:
+    """What a request tells of the browser that signs in."""
+
+    address: str
+    agent: str
+    cookies: str
+
+    @property
+    def session(self) -> str:
+        """The token of the session with which it came; empty where there is none."""
+        return session_token(self.cookies)
+
+
 WRONG = "The e-mail address or the password is wrong, or the account is disabled."
 
 
-def sign_in(
-    context: Context, attempts: Attempts, email: str, password: str, address: str, agent: str, old: str
-) -> tuple[str, User]:
-    """A new session's token: never one that the browser came with. `old` is that one; it ends.
+def sign_in(context: Context, attempts: Attempts, email: str, password: str, browser: Browser) -> tuple[str, User]:
+    """A new session's token: never one that the browser came with.
 
     Raises SignInError, TooManyError.
     """
-    account = email.strip().lower()
-    attempts.begin(account, address)
+    account, address = email.strip().lower(), browser.address
     with context.database.read() as session:
         user = AccountRepository(session).by_email(account)
+    known = known_browser(browser.cookies, user.id, context.secret) if user else None
+    attempts.begin(account, address, known)
     good, fresh = check_password(password, user.password_hash if user else None)
     if user is None or not good or user.disabled_at is not None:
         log.warning("A sign-in as %r from %s was refused", account[:100], address)
         raise SignInError(WRONG)
-    attempts.forgive(account, address)
+    attempts.forgive(account, address, known)
     note(user)
     with context.change() as unit:
         if fresh is not None:
             AccountRepository(unit.session).get(user.id).password_hash = fresh
-        return open_session(context, unit, user.id, agent, old), user
+        return open_session(context, unit, user.id, browser), user
 
 
 def note(user: User) -> None:
@@ -55,13 +73,14 @@ def note(user: User) -> None:
         act.actor, act.user_id = user.email, user.id
 
 
-def open_session(context: Context, unit: Unit, user_id: str, agent: str, old: str) -> str:
+def open_session(context: Context, unit: Unit, user_id: str, browser: Browser, by_provider: bool = False) -> str:
+    """A new session's token; the session that the browser came with ends."""
     token = new_token(SESSION)
     accounts = AccountRepository(unit.session)
-    if old:
-        accounts.sign_out(digest(old, context.secret))
+    if browser.session:
+        accounts.sign_out(digest(browser.session, context.secret))
     expires_at = utc_now() + timedelta(hours=context.settings.session_hours)
-    accounts.sign_in(user_id, digest(token, context.secret), agent, expires_at)
+    accounts.sign_in(user_id, digest(token, context.secret), browser.agent, expires_at, by_provider)
     return token
 
 
@@ -97,6 +116,7 @@ def me(context: Context, principal: Principal, session: str) -> Me:
         home=HomeInfo.model_validate(home) if home else None,
         homes=[HomeInfo.model_validate(each) for each in homes],
         key_scope=principal.key_scope,  # type: ignore[arg-type]
+        by_provider=principal.by_provider,
         csrf_token=csrf_token(session) if principal.kind == "session" else None,
     )
 
@@ -117,10 +137,10 @@ def change_password(
     context: Context, attempts: Attempts, principal: Principal, old: str, new: str, address: str
 ) -> None:
     user = account_of(principal)
-    attempts.begin(user.email, address)
+    attempts.begin(user.email, address, principal.credential_id)  # strangers' attempts do not count here
     if not check_password(old, user.password_hash)[0]:
         raise CaseError([FieldError(("old",), "is not the present password")])
-    attempts.forgive(user.email, address)
+    attempts.forgive(user.email, address, principal.credential_id)
     hashed = hash_password(new)
     with context.change() as unit:
         accounts = AccountRepository(unit.session)

@@ -17,7 +17,7 @@ from store.tokens import INVITATION, digest, is_token, new_token
 from ..access import Principal
 from ..context import Context, Unit
 from ..people_schemas import Acceptance, InvitationRequest, InvitationShown
-from .accounts import in_days, note, open_session
+from .accounts import Browser, in_days, note, open_session
 
 
 def add_team(context: Context, principal: Principal, name: str) -> Team:
@@ -73,7 +73,7 @@ def look(context: Context, token: str) -> InvitationShown:
 
 
 def accept(
-    context: Context, token: str, given: Acceptance, principal: Principal | None, agent: str, old: str
+    context: Context, token: str, given: Acceptance, principal: Principal | None, browser: Browser
 ) -> tuple[str, User]:
     """Join, or choose a password; gives a session's token. Everything is checked before anything is changed."""
     look(context, token)  # before the work of a hash is done for a stranger
@@ -85,7 +85,7 @@ def accept(
             TeamRepository(unit.session).join(row.team_id, user.id, row.role)
         TeamRepository(unit.session).use(row, user.id)
         note(user)
-        return open_session(context, unit, user.id, agent, old), user
+        return open_session(context, unit, user.id, browser), user
 
 
 def _guest(unit: Unit, row: Invitation, given: Acceptance, hashed: str | None, principal: Principal | None) -> User:

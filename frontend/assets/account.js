@@ -51,10 +51,20 @@
     return "";
   }
 
+  /* The way to the OpenID Connect provider, where the service has one. */
+  async function provider(next, prefix) {
+    const [state] = await ask("/auth", "GET");
+    if (!state || !state.provider) return [];
+    const href = `${API}/auth/oidc/start?next=${encodeURIComponent(inner(next, prefix))}`;
+    const props = { children: `Sign in with ${state.provider}`, href, className: "sd-button sd-button-default" };
+    return [{ namespace: "dash_html_components", type: "A", props }];
+  }
+
   async function signOut(clicks, prefix) {
     if (!clicks) return nothing();
+    const [me] = await ask("/me", "GET");
     const [, fault] = await ask("/auth/sign-out", "POST", { everywhere: false });
-    if (!fault) window.location.assign(`${prefix}sign-in`);
+    if (!fault) window.location.assign(me && me.by_provider ? `${API}/auth/oidc/sign-out` : `${prefix}sign-in`);
     return fault || "";
   }
 
@@ -69,5 +79,5 @@
   }
 
   window.dash_clientside = window.dash_clientside || {};
-  window.dash_clientside.slowdrift = Object.assign(window.dash_clientside.slowdrift || {}, { corner, signIn, signOut, accept });
+  window.dash_clientside.slowdrift = Object.assign(window.dash_clientside.slowdrift || {}, { corner, signIn, signOut, provider, accept });
 })();

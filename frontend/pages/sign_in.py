@@ -11,9 +11,22 @@ from frontend.client import attempt, client
 from frontend.components.messages import refusal
 from frontend.format import moment
 
+OIDC = {
+    "expired": "The sign-in took too long, or was begun in another browser. Try again.",
+    "refused": "The provider did not sign you in.",
+    "failed": "The provider's answer could not be used. Try again; the service's log has the reason.",
+    "unavailable": "The provider does not answer at present. Try again later, or sign in with a password.",
+    "email": "The provider does not confirm your e-mail address. Confirm it there, then try again.",
+    "unknown": "There is no account for you yet. An owner of a team invites you by e-mail address.",
+    "disabled": "Your account is disabled. An administrator can enable it.",
+    "other": "The account with your e-mail address belongs to somebody else at the provider. Ask an administrator.",
+    "many": "Too many attempts. Try again in ten minutes.",
+}
+"""Why the service (api/routes/oidc.py) sent somebody back here."""
 
-def layout(next: str = "", **_: Any) -> Any:
-    """`/sign-in?next=ADDRESS` goes on to where one wanted to go."""
+
+def layout(next: str = "", oidc: str = "", **_: Any) -> Any:
+    """`/sign-in?next=ADDRESS` goes on to where one wanted to go; `oidc=REASON` tells why a provider's word did not do."""
     return dmc.Stack(
         [
             dcc.Store(id="sign-in-next", data=next),
@@ -22,6 +35,8 @@ def layout(next: str = "", **_: Any) -> Any:
             dmc.PasswordInput(id="sign-in-password", label="Password", n_submit=0, autoComplete="current-password"),
             html.Div(id="sign-in-fault", role="alert", className="sd-fault"),
             dmc.Group(dmc.Button("Sign in", id="sign-in")),
+            html.Div(id="sign-in-provider"),
+            html.Div(OIDC.get(oidc, ""), role="alert", className="sd-fault"),
             dmc.Text(
                 "No account? An owner of your team invites you by a link. Forgotten the password? An administrator makes "
                 "a link to choose a new one.",
@@ -53,6 +68,10 @@ def register(app: Dash) -> None:
         ClientsideFunction("slowdrift", "signIn"), Output("sign-in-fault", "children"), Input("sign-in", "n_clicks"),
         Input("sign-in-password", "n_submit"), State("sign-in-email", "value"), State("sign-in-password", "value"),
         State("sign-in-next", "data"), State("prefix", "data"), prevent_initial_call=True,
+    )  # fmt: skip
+    app.clientside_callback(
+        ClientsideFunction("slowdrift", "provider"), Output("sign-in-provider", "children"),
+        Input("sign-in-next", "data"), State("prefix", "data"),
     )  # fmt: skip
     app.callback(Output("invitation", "children"), Input("invitation-token", "data"))(show)
     app.clientside_callback(

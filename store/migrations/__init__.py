@@ -13,7 +13,7 @@ from ..database import Database
 if TYPE_CHECKING:
     from alembic.config import Config
 
-HEAD = "0007"
+HEAD = "0008"
 """The newest revision; a constant, so that asking whether a database is current loads no Alembic."""
 _LOCK = 7_345_001  # any number of our own: one migration at a time on a PostgreSQL server's database
 

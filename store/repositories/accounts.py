@@ -65,9 +65,9 @@ class AccountRepository:
 
     # -- sessions
 
-    def sign_in(self, user_id: str, digest: str, agent: str, expires_at: datetime) -> SignIn:
+    def sign_in(self, user_id: str, digest: str, agent: str, expires_at: datetime, by_provider: bool = False) -> SignIn:
         self.session.execute(delete(SignIn).where(SignIn.expires_at < utc_now()))
-        row = SignIn(user_id=user_id, digest=digest, agent=agent[:200], expires_at=expires_at)
+        row = SignIn(user_id=user_id, digest=digest, agent=agent[:200], expires_at=expires_at, by_provider=by_provider)
         self.session.add(row)
         self.session.flush()
         return row

@@ -154,6 +154,14 @@ class TeamRepository:
         query = select(Invitation).where(Invitation.team_id == team_id, Invitation.used_at.is_(None))
         return self.session.scalars(query.where(Invitation.expires_at > utc_now()).order_by(Invitation.id.desc())).all()
 
+    def invitations_to(self, email: str) -> Sequence[Invitation]:
+        """Into teams, for this address and no other; still good, oldest first, locked."""
+        named = (Invitation.email == email) & Invitation.user_id.is_(None) & Invitation.team_id.is_not(None)
+        good = Invitation.used_at.is_(None) & (Invitation.expires_at > utc_now()) & ~Invitation.is_admin
+        return self.session.scalars(
+            select(Invitation).where(named, good).order_by(Invitation.id).with_for_update()
+        ).all()
+
     def invitation(self, digest: str) -> Invitation:
         """One that is still good, locked: it works once."""
         good = (Invitation.digest == digest) & Invitation.used_at.is_(None) & (Invitation.expires_at > utc_now())

@@ -17,7 +17,6 @@ from typing import Any
 
 import pytest
 from fastapi import FastAPI
-from fastapi.testclient import TestClient
 
 from api.guard import COOKIE
 from api.main import create_app
@@ -33,7 +32,7 @@ from store.repositories.teams import TeamRepository
 from store.scope import Scope
 from store.settings import Settings
 from store.tokens import KEY, SESSION, START, digest, new_token, read_secret
-from tests.api.conftest import fpso, migrated, riser  # noqa: F401  (fixtures)
+from tests.api.conftest import TestClient, fpso, migrated, riser  # noqa: F401  (fixtures)
 from tests.awaiting import awaited
 from tests.service import fake_solver
 from tests.service.conftest import create_database, drop_database

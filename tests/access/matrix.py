@@ -77,6 +77,9 @@ MATRIX: dict[str, Line] = {
     "GET /api/v1/openapi.json": Line("open", 200),
     # signing in, oneself
     "GET /api/v1/auth": Line("open", 200),
+    "GET /api/v1/auth/oidc/start": Line("open", 404),  # with a provider: test_oidc.py
+    "GET /api/v1/auth/oidc/callback": Line("open", 404),
+    "GET /api/v1/auth/oidc/sign-out": Line("open", 404),
     "POST /api/v1/auth/sign-in": Line("open", 422, body={}),  # with a password: test_sessions.py
     "POST /api/v1/auth/sign-out": Line("open", 204, forgetful=True),
     "GET /api/v1/me": Line("account", 200),

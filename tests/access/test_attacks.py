@@ -14,9 +14,9 @@ from urllib.parse import quote
 import pytest
 import zstandard
 from a2wsgi import WSGIMiddleware
-from fastapi.testclient import TestClient
 
 from tests.access.conftest import World, netcdf
+from tests.api.conftest import TestClient
 from tests.service.running import a_case
 
 SCRIPT = "<script>alert(1)</script><img src=x onerror=alert(2)>"

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-from fastapi.testclient import TestClient
 
 from api import doorkeeper
 from api.main import create_app
@@ -13,7 +12,7 @@ from store.database import Database
 from store.models import DEFAULT_PROJECT, DEFAULT_TEAM
 from store.repositories.accounts import AccountRepository
 from store.settings import Settings
-from tests.api.conftest import service_settings  # noqa: F401  (fixture)
+from tests.api.conftest import TestClient, service_settings  # noqa: F401  (fixture)
 from tests.service.running import a_case
 
 
@@ -25,7 +24,7 @@ def alone(service_settings: Settings, monkeypatch: pytest.MonkeyPatch) -> Iterat
 
 
 def test_everything_is_open_to_this_machine(alone: TestClient) -> None:
-    assert alone.get("/api/v1/auth").json() == {"accounts": False, "signed_in": False}
+    assert alone.get("/api/v1/auth").json() == {"accounts": False, "signed_in": False, "provider": None}
     me = alone.get("/api/v1/me").json()
     assert (me["mode"], me["by"], me["user"]) == ("one-person", "local", None)
     assert (me["home"]["team_id"], me["home"]["project_id"]) == (DEFAULT_TEAM, DEFAULT_PROJECT)
@@ -60,4 +59,4 @@ def test_the_first_account_locks_a_running_service(alone: TestClient, service_se
         AccountRepository(session).add("ada@x.org", "Ada", None, True)
     database.close()
     assert alone.get("/api/v1/runs").status_code == 401
-    assert alone.get("/api/v1/auth").json() == {"accounts": True, "signed_in": False}
+    assert alone.get("/api/v1/auth").json() == {"accounts": True, "signed_in": False, "provider": None}

@@ -5,7 +5,6 @@ from __future__ import annotations
 from datetime import timedelta
 
 import pytest
-from fastapi.testclient import TestClient
 from sqlalchemy import select, update
 
 from api.attempts import Attempts
@@ -16,6 +15,7 @@ from store.people import SignIn
 from store.settings import Settings
 from store.tokens import SESSION, csrf_token, digest, is_token, new_token
 from tests.access.conftest import ORIGIN, PASSWORD, World
+from tests.api.conftest import TestClient
 from tests.service.conftest import REDIS, need
 
 SIGN_IN = "/api/v1/auth/sign-in"
@@ -34,11 +34,11 @@ def enter(client: TestClient, name: str = "editor") -> str:
 
 def test_the_way_in_and_out(world: World) -> None:
     client = world.client(**ORIGIN)
-    assert client.get("/api/v1/auth").json() == {"accounts": True, "signed_in": False}
+    assert client.get("/api/v1/auth").json() == {"accounts": True, "signed_in": False, "provider": None}
     answer = client.post(SIGN_IN, json={"email": "  Editor@X.org ", "password": PASSWORD})
     assert answer.json()["user"]["email"] == "editor@x.org"
     assert answer.json()["home"]["role"] == "editor"
-    assert client.get("/api/v1/auth").json() == {"accounts": True, "signed_in": True}
+    assert client.get("/api/v1/auth").json() == {"accounts": True, "signed_in": True, "provider": None}
     me = client.get("/api/v1/me").json()
     assert (me["mode"], me["by"], me["csrf_token"]) == ("accounts", "session", answer.json()["csrf_token"])
     token = client.cookies[COOKIE]

@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fastapi.testclient import TestClient
 
 from api.main import create_app
 from solver.results.channel import Axis, Channel
 from store.database import Database
 from store.settings import Settings
+from tests.api.conftest import TestClient
 from tests.service import fake_solver
 from tests.service.running import a_case
 from tests.vessel import synthetic

@@ -47,6 +47,25 @@ def test_other_machines_are_refused_without_accounts(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("option", "value", "named"),
+    [
+        ("--public-url", "https://slowdrift.example.org", "SLOWDRIFT_PUBLIC_URL"),
+        ("--forwarded-allow-ips", "127.0.0.1", "SLOWDRIFT_FORWARDED_ALLOW_IPS"),
+    ],
+)
+def test_a_proxy_is_refused_without_accounts(tmp_path: Path, option: str, value: str, named: str) -> None:
+    done = slowdrift(tmp_path, "serve", option, value, "--port", "0")
+    assert done.returncode == 2
+    assert f"The settings name a proxy ({named}), and there are no accounts yet" in done.stderr
+    assert "--setup" in done.stderr
+
+
+def test_the_public_name_is_one_of_ours() -> None:
+    assert "slowdrift.example.org" in Settings(public_url="https://slowdrift.example.org:8443").hosts
+    assert Settings().hosts == ["127.0.0.1", "localhost", "::1"]
+
+
+@pytest.mark.parametrize(
     ("host", "loopback"),
     [
         ("127.0.0.1", True),

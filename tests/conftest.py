@@ -13,12 +13,13 @@ from hypothesis import settings
 settings.register_profile("untimed", deadline=None, derandomize="SLOWDRIFT_FUZZ" not in os.environ)
 settings.load_profile("untimed")
 
+KERNELS_READY = "SLOWDRIFT_KERNELS_READY"  # set by a program that has filled the cache itself
 WARM = "from solver.run import warm_up, warm_up_time_domain; print(f'{warm_up() + warm_up_time_domain():.0f}')"
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
     """Fill the cache of compiled kernels once, so that no test or service under test waits for a compiler."""
-    if hasattr(session.config, "workerinput") or session.config.option.collectonly:
+    if hasattr(session.config, "workerinput") or session.config.option.collectonly or KERNELS_READY in os.environ:
         return
     environment = {
         **os.environ,

@@ -1,0 +1,266 @@
+"""Mutation score of the quick loop: how many small faults, planted one at a time, its tests notice.
+
+    python -m benchmarks.mutation cover --out cover.json         # once: which test executes which line (a whole quick loop)
+    python -m benchmarks.mutation run --cover cover.json --out run.csv [--area store] [--sample 160] [--seed 14]
+    python -m benchmarks.mutation again --cover cover.json --out run.csv     # only what survived, after tests were added
+    python -m benchmarks.mutation score --out run.csv
+
+A warm process that has imported the third-party libraries and everything below the area forks for every mutant. The
+child plants the mutant (benchmarks/mutants.py), imports the area with it and runs the tests that execute the line, the
+fastest first, until one fails. A mutant on a line without a test counts as survived. Programs that a test starts import
+the mutant too. Needs the package `coverage` beside the development requirements.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass
+from importlib import import_module
+from pathlib import Path
+
+from benchmarks.mutants import AREAS, ROOT, Mutant, mutants, plant, site_folder
+
+FIXTURE = "fixture:"
+MOST_SECONDS = 45.0  # of tests for one mutant, by the time they took in `cover`
+MOST_TESTS = 150
+LIMIT = 240.0  # s: a child that takes longer has been stopped by its mutant
+THIRD_PARTY = (
+    "numpy", "scipy.optimize", "scipy.linalg", "scipy.interpolate", "scipy.sparse", "numba", "pydantic", "yaml", "h5py",
+    "fastapi.testclient", "sqlalchemy.orm", "alembic.command", "httpx", "celery", "hypothesis", "pytest", "xarray",
+    "pwdlib", "jsonschema_rs", "h5netcdf", "rainflow", "prometheus_client", "limits",
+)  # fmt: skip
+BELOW = {
+    "solver/results": ("solver.frequency_domain.solve", "solver.modes.solve", "solver.time_domain.ensemble"),
+    "solver/frequency_domain": ("solver.statics.solve", "solver.model.linear", "solver.kernels"),
+    "store": ("solver.run",), "api": ("store.database", "store.repositories.runs"),
+}  # fmt: skip
+#: where the tests of an area stand, for mutants at the level of a module
+FOLDERS = {
+    "solver/results": ("tests/results", "tests/frequency_domain", "tests/docs", "tests/cli"),
+    "solver/frequency_domain": ("tests/frequency_domain",),
+    "store": ("tests/store", "tests/studies", "tests/access"),
+    "api": ("tests/api", "tests/access", "tests/studies"),
+}
+COLUMNS = ("area", "file", "number", "line", "scope", "what", "tests", "status", "killer", "seconds")
+
+
+@dataclass
+class Row:
+    """One mutant and what became of it. status: killed, survived, uncovered, timeout."""
+
+    area: str
+    file: str
+    number: int
+    line: int
+    scope: str
+    what: str
+    tests: int = 0
+    status: str = ""
+    killer: str = ""
+    seconds: float = 0.0
+
+
+class Coverage:
+    """Tests by line, from one or more files that `cover` wrote."""
+
+    def __init__(self, places: list[str]) -> None:
+        self.lines: dict[tuple[str, int], set[str]] = {}
+        self.seconds: dict[str, float] = {}
+        for place in places:
+            found = json.loads(Path(place).read_text())
+            self.seconds.update(found["seconds"])
+            for file, lines in found["lines"].items():
+                for number, contexts in lines.items():
+                    self.lines.setdefault((file, int(number)), set()).update(_tests(contexts, found["users"]))
+
+    def of(self, mutant: Mutant, area: str) -> list[str]:
+        """The tests to run, fastest first: of the line, or of the module where the line runs at import."""
+        names = self.lines.get((mutant.file, mutant.line), set()) if mutant.scope else set()
+        if not mutant.scope:
+            inside = [tests for (file, _), tests in self.lines.items() if file == mutant.file]
+            names = set().union(*inside) or {t for t in self.seconds if t.startswith(FOLDERS[area])}
+        chosen, total = [], 0.0
+        for name in sorted(names, key=lambda one: self.seconds.get(one, 1e9)):
+            total += self.seconds.get(name, 1e9)
+            if len(chosen) >= MOST_TESTS or (chosen and total > MOST_SECONDS):
+                break
+            chosen.append(name)
+        return chosen
+
+
+def _tests(contexts: list[str], users: dict[str, list[str]]) -> Iterator[str]:
+    for context in contexts:
+        if context.startswith(FIXTURE):
+            yield from users.get(context, [])
+        elif "::" in context:
+            yield context
+
+
+def run(rows: list[tuple[Mutant, Row]], cover: Coverage, note: Callable[[Row], None], jobs: int) -> None:
+    """Try every mutant, `jobs` children at a time."""
+    for name in (*THIRD_PARTY, *BELOW[rows[0][1].area]):
+        import_module(name)
+    taken = [name for name in sys.modules if (name + ".").startswith(tuple(_dotted(rows[0][1].area)))]
+    if taken:
+        raise SystemExit(f"imported before the fork, so that no mutant would reach it: {taken}")
+    with ThreadPoolExecutor(jobs) as pool:
+        for row in pool.map(lambda pair: _try(*pair, cover), rows):
+            note(row)
+
+
+def _dotted(area: str) -> list[str]:
+    return [folder.replace("/", ".") + "." for folder in AREAS[area]]
+
+
+def _try(mutant: Mutant, row: Row, cover: Coverage) -> Row:
+    tests = cover.of(mutant, row.area)
+    row.tests, started = len(tests), time.perf_counter()
+    if not tests:
+        row.status = "uncovered"
+        return row
+    with tempfile.TemporaryDirectory(prefix="mutant-") as folder:
+        row.status, row.killer = _wait(_child(mutant, tests, Path(folder)), Path(folder))
+    row.seconds = round(time.perf_counter() - started, 1)
+    return row
+
+
+def _child(mutant: Mutant, tests: list[str], folder: Path) -> int:
+    """Fork: the child runs the tests with the mutant planted, and leaves with pytest's status."""
+    pid = os.fork()
+    if pid:
+        return pid
+    status = 99
+    try:
+        os.setsid()
+        for signum in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(signum, signal.SIG_DFL)
+        out = os.open(folder / "out", os.O_WRONLY | os.O_CREAT)
+        for descriptor in (1, 2):
+            os.dup2(out, descriptor)
+        os.environ["PYTHONPATH"] = os.pathsep.join([str(site_folder(folder / "site")), str(ROOT)])
+        os.environ["SLOWDRIFT_KERNELS_READY"] = "1"
+        plant(mutant.file, mutant.number)
+        import pytest
+
+        status = int(pytest.main(["-x", "-q", "-p", "no:cacheprovider", "-p", "no:randomly", "--tb=no", "-rf",
+                                  f"--basetemp={folder / 'tmp'}", *tests]))  # fmt: skip
+    except BaseException as fault:
+        print(f"FAILED import - {fault!r}", flush=True)
+        status = 1
+    finally:
+        os._exit(status)
+
+
+def _wait(pid: int, folder: Path) -> tuple[str, str]:
+    deadline = time.monotonic() + LIMIT
+    while True:
+        done, raw = os.waitpid(pid, os.WNOHANG)
+        if done:
+            break
+        if time.monotonic() > deadline:
+            os.killpg(pid, signal.SIGKILL)
+            os.waitpid(pid, 0)
+            return "timeout", ""
+        time.sleep(0.02)
+    text = (folder / "out").read_text(errors="replace") if (folder / "out").exists() else ""
+    failed = [line.split(" - ")[0] for line in text.splitlines() if line.startswith(("FAILED", "ERROR"))]
+    if os.waitstatus_to_exitcode(raw) == 0:
+        return "survived", ""
+    return "killed", failed[0].split(" ", 1)[1] if failed else text.strip().splitlines()[-1][:120] if text.strip() else "?"
+
+
+def sampled(area: str, sample: int, seed: int) -> list[Mutant]:
+    """A sample without repetition, the same for a seed and a tree."""
+    every = list(mutants(area))
+    return random.Random(f"{seed} {area}").sample(every, min(sample, len(every)))
+
+
+def cover(out: Path, tests: list[str]) -> None:
+    """Run the tests (the quick loop without any) under coverage and write lines, fixtures and times."""
+    environment = {**os.environ, "SLOWDRIFT_COVERAGE_OUT": str(out), "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, "-m", "pytest", "-p", "benchmarks.mutation_coverage", "-p", "no:cacheprovider"]
+    subprocess.run([*command, "-m", "not slow", *tests], cwd=ROOT, env=environment, check=False)
+
+
+def write(place: Path, rows: list[Row]) -> None:
+    with place.open("w", newline="") as file:
+        table = csv.DictWriter(file, COLUMNS)
+        table.writeheader()
+        table.writerows(asdict(row) for row in rows)
+
+
+def read(place: Path) -> list[Row]:
+    if not place.exists():
+        return []
+    with place.open(newline="") as file:
+        return [
+            Row(**{**row, "number": int(row["number"]), "line": int(row["line"]), "tests": int(row["tests"]),  # type: ignore[arg-type]
+                   "seconds": float(row["seconds"])}) for row in csv.DictReader(file)
+        ]  # fmt: skip
+
+
+def score(rows: list[Row]) -> Iterator[str]:
+    """Lines of the score by area. `equivalent` is set by hand, with its reason in `killer`."""
+    for area in AREAS:
+        own = [row.status for row in rows if row.area == area]
+        if own:
+            count = {status: own.count(status) for status in ("killed", "timeout", "survived", "uncovered", "equivalent")}
+            killed, all_ = count["killed"] + count["timeout"], len(own) - count["equivalent"]
+            yield f"{area}: {killed} of {all_} killed, {100 * killed / all_:.1f} %; {count}"
+
+
+def main() -> None:
+    words = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
+    words.add_argument("what", choices=("cover", "run", "again", "score"))
+    words.add_argument("--out", type=Path, required=True)
+    words.add_argument("--cover", nargs="*", default=[])
+    words.add_argument("--area", choices=tuple(AREAS))
+    words.add_argument("--sample", type=int, default=160)
+    words.add_argument("--seed", type=int, default=14)
+    words.add_argument("--jobs", type=int, default=2)
+    words.add_argument("tests", nargs="*")
+    said = words.parse_args()
+    if said.what == "cover":
+        cover(said.out.resolve(), said.tests)
+    elif said.what == "score":
+        print(*score(read(said.out)), sep="\n")
+    else:
+        _campaign(said)
+
+
+def _campaign(said: argparse.Namespace) -> None:
+    os.chdir(ROOT)
+    os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
+    old = read(said.out)
+    if said.what == "again":
+        open_rows = [row for row in old if row.status in ("survived", "uncovered") and row.area == said.area]
+        pairs = [(Mutant(row.file, row.number, row.line, row.what, row.scope), row) for row in open_rows]
+    else:
+        known = {(row.file, row.number) for row in old}
+        fresh = [one for one in sampled(said.area, said.sample, said.seed) if (one.file, one.number) not in known]
+        pairs = [(one, Row(said.area, one.file, one.number, one.line, one.scope, one.what)) for one in fresh]
+    if not pairs:
+        return
+    done: list[Row] = []
+
+    def note(row: Row) -> None:
+        done.append(row)
+        print(f"{len(done)}/{len(pairs)} {row.status} {row.file}:{row.line} {row.what} [{row.tests}, {row.seconds} s]", flush=True)
+        write(said.out, old if said.what == "again" else old + done)
+
+    run(pairs, Coverage(said.cover), note, said.jobs)
+
+
+if __name__ == "__main__":
+    main()

@@ -51,27 +51,31 @@ class Mutant:
     line: int
     what: str
     scope: str  # the function it is in; empty at the level of the module or a class
+    body: tuple[int, int] = (0, 0)  # first and last line of that function
 
 
 class _Places(ast.NodeVisitor):
     """Walks a tree and collects (line, what, scope, change)."""
 
     def __init__(self) -> None:
-        self.found: list[tuple[int, str, str, Callable[[], None]]] = []
+        self.found: list[tuple[int, str, str, Callable[[], None], tuple[int, int]]] = []
         self.scope: list[str] = []
+        self.bodies: list[tuple[int, int]] = [(0, 0)]
 
     def add(self, node: ast.AST, what: str, change: Callable[[], None]) -> None:
-        self.found.append((getattr(node, "lineno", 0), what, ".".join(self.scope), change))
+        self.found.append((getattr(node, "lineno", 0), what, ".".join(self.scope), change, self.bodies[-1]))
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> None:
         if any("njit" in ast.unparse(one) or "overload" in ast.unparse(one) for one in node.decorator_list):
             return
         self.scope.append(node.name)
+        self.bodies.append((node.lineno, node.end_lineno or node.lineno))
         for default in [*node.args.defaults, *[one for one in node.args.kw_defaults if one is not None]]:
             self.visit(default)
         for statement in node.body:
             self.visit(statement)
         self.scope.pop()
+        self.bodies.pop()
 
     visit_AsyncFunctionDef = visit_FunctionDef  # type: ignore[assignment]
 
@@ -234,8 +238,8 @@ def mutants(area: str) -> Iterator[Mutant]:
         for path in sorted((ROOT / folder).rglob("*.py")):
             file = str(path.relative_to(ROOT))
             if not file.startswith(SKIPPED):
-                for number, (line, what, scope, _) in enumerate(_tree(file)[1].found):
-                    yield Mutant(file, number, line, what, scope)
+                for number, (line, what, scope, _, body) in enumerate(_tree(file)[1].found):
+                    yield Mutant(file, number, line, what, scope, body)
 
 
 def mutated(file: str, number: int) -> Any:

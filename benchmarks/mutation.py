@@ -18,6 +18,7 @@ import csv
 import json
 import os
 import random
+import resource
 import signal
 import subprocess
 import sys
@@ -29,12 +30,13 @@ from dataclasses import asdict, dataclass
 from importlib import import_module
 from pathlib import Path
 
-from benchmarks.mutants import AREAS, ROOT, Mutant, mutants, plant, site_folder
+from benchmarks.mutants import AREAS, ROOT, SKIPPED, Mutant, mutants, plant, site_folder
 
 FIXTURE = "fixture:"
 MOST_SECONDS = 45.0  # of tests for one mutant, by the time they took in `cover`
 MOST_TESTS = 150
-LIMIT = 240.0  # s: a child that takes longer has been stopped by its mutant
+LIMIT = 100  # s of processor time: a child that takes more runs on by its mutant
+WAIT = 1800.0  # s: a child that waits longer than this is held up by its mutant
 THIRD_PARTY = (
     "numpy", "scipy.optimize", "scipy.linalg", "scipy.interpolate", "scipy.sparse", "numba", "pydantic", "yaml", "h5py",
     "fastapi.testclient", "sqlalchemy.orm", "alembic.command", "httpx", "celery", "hypothesis", "pytest", "xarray",
@@ -42,8 +44,11 @@ THIRD_PARTY = (
 )  # fmt: skip
 BELOW = {
     "solver/results": ("solver.frequency_domain.solve", "solver.modes.solve", "solver.time_domain.ensemble"),
-    "solver/frequency_domain": ("solver.statics.solve", "solver.model.linear", "solver.kernels"),
-    "store": ("solver.run",), "api": ("store.database", "store.repositories.runs"),
+    "solver/frequency_domain": (
+        "solver.statics.solve", "solver.model.linear", "solver.kernels.march", "solver.kernels.step", "solver.kernels.record",
+        "solver.time_domain.statistics", "solver.frequency_domain.coefficients", "solver.frequency_domain.transfer",
+    ),
+    "store": ("solver.run",), "api": ("solver.run", "store.database", "store.repositories.runs"),
 }  # fmt: skip
 #: where the tests of an area stand, for mutants at the level of a module
 FOLDERS = {
@@ -87,6 +92,10 @@ class Coverage:
     def of(self, mutant: Mutant, area: str) -> list[str]:
         """The tests to run, fastest first: of the line, or of the module where the line runs at import."""
         names = self.lines.get((mutant.file, mutant.line), set()) if mutant.scope else set()
+        names = {name for name in names if self.seconds.get(name, 1e9) < 1e9}
+        if mutant.scope and not names:  # a default, or a line of a statement that has no line of its own
+            lines = range(mutant.body[0], mutant.body[1] + 1)
+            names = set().union(*(self.lines.get((mutant.file, line), set()) for line in lines))
         if not mutant.scope:
             inside = [tests for (file, _), tests in self.lines.items() if file == mutant.file]
             names = set().union(*inside) or {t for t in self.seconds if t.startswith(FOLDERS[area])}
@@ -109,14 +118,28 @@ def _tests(contexts: list[str], users: dict[str, list[str]]) -> Iterator[str]:
 
 def run(rows: list[tuple[Mutant, Row]], cover: Coverage, note: Callable[[Row], None], jobs: int) -> None:
     """Try every mutant, `jobs` children at a time."""
-    for name in (*THIRD_PARTY, *BELOW[rows[0][1].area]):
-        import_module(name)
-    taken = [name for name in sys.modules if (name + ".").startswith(tuple(_dotted(rows[0][1].area)))]
-    if taken:
-        raise SystemExit(f"imported before the fork, so that no mutant would reach it: {taken}")
+    _prepare(rows[0][1].area)
     with ThreadPoolExecutor(jobs) as pool:
         for row in pool.map(lambda pair: _try(*pair, cover), rows):
             note(row)
+
+
+def _prepare(area: str) -> None:
+    """Import what children share, and load every compiled kernel; the area and what imports it are forgotten again."""
+    for name in (*THIRD_PARTY, *BELOW[area]):
+        import_module(name)
+    kept = set(sys.modules)
+    warm = import_module("solver.warm")
+    print(f"kernels ready in {warm.warm_up() + warm.warm_up_time_domain():.0f} s", flush=True)
+    for name in set(sys.modules) - kept:
+        if name.split(".")[0] in ("solver", "store", "api", "worker"):
+            del sys.modules[name]
+    skipped = tuple(file.removesuffix(".py").replace("/", ".") for file in SKIPPED)
+    inside = [name for name in sys.modules if (name + ".").startswith(tuple(_dotted(area)))]
+    taken = [name for name in inside if sys.modules[name].__file__ and not name.startswith(skipped)
+             and Path(str(sys.modules[name].__file__)).name != "__init__.py"]  # fmt: skip
+    if taken:
+        raise SystemExit(f"imported before the fork, so that no mutant would reach it: {taken}")
 
 
 def _dotted(area: str) -> list[str]:
@@ -125,13 +148,12 @@ def _dotted(area: str) -> list[str]:
 
 def _try(mutant: Mutant, row: Row, cover: Coverage) -> Row:
     tests = cover.of(mutant, row.area)
-    row.tests, started = len(tests), time.perf_counter()
+    row.tests = len(tests)
     if not tests:
         row.status = "uncovered"
         return row
     with tempfile.TemporaryDirectory(prefix="mutant-") as folder:
-        row.status, row.killer = _wait(_child(mutant, tests, Path(folder)), Path(folder))
-    row.seconds = round(time.perf_counter() - started, 1)
+        row.status, row.killer, row.seconds = _wait(_child(mutant, tests, Path(folder)), Path(folder))
     return row
 
 
@@ -143,6 +165,7 @@ def _child(mutant: Mutant, tests: list[str], folder: Path) -> int:
     status = 99
     try:
         os.setsid()
+        resource.setrlimit(resource.RLIMIT_CPU, (LIMIT, LIMIT + 5))
         for signum in (signal.SIGINT, signal.SIGTERM):
             signal.signal(signum, signal.SIG_DFL)
         out = os.open(folder / "out", os.O_WRONLY | os.O_CREAT)
@@ -153,7 +176,7 @@ def _child(mutant: Mutant, tests: list[str], folder: Path) -> int:
         plant(mutant.file, mutant.number)
         import pytest
 
-        status = int(pytest.main(["-x", "-q", "-p", "no:cacheprovider", "-p", "no:randomly", "--tb=no", "-rf",
+        status = int(pytest.main(["-x", "-q", "-p", "no:cacheprovider", "-p", "no:randomly", "--tb=no", "-rfE",
                                   f"--basetemp={folder / 'tmp'}", *tests]))  # fmt: skip
     except BaseException as fault:
         print(f"FAILED import - {fault!r}", flush=True)
@@ -162,22 +185,30 @@ def _child(mutant: Mutant, tests: list[str], folder: Path) -> int:
         os._exit(status)
 
 
-def _wait(pid: int, folder: Path) -> tuple[str, str]:
-    deadline = time.monotonic() + LIMIT
+def _wait(pid: int, folder: Path) -> tuple[str, str, float]:
+    """Status, the test that failed, and the processor time that the child took."""
+    deadline = time.monotonic() + WAIT
     while True:
-        done, raw = os.waitpid(pid, os.WNOHANG)
+        done, raw, used = os.wait4(pid, os.WNOHANG)
         if done:
             break
         if time.monotonic() > deadline:
             os.killpg(pid, signal.SIGKILL)
-            os.waitpid(pid, 0)
-            return "timeout", ""
-        time.sleep(0.02)
-    text = (folder / "out").read_text(errors="replace") if (folder / "out").exists() else ""
-    failed = [line.split(" - ")[0] for line in text.splitlines() if line.startswith(("FAILED", "ERROR"))]
+            os.wait4(pid, 0)
+            return "timeout", "", float(LIMIT)
+        time.sleep(0.05)
+    seconds = round(used.ru_utime + used.ru_stime, 1)
+    if os.WIFSIGNALED(raw) and os.WTERMSIG(raw) in (signal.SIGXCPU, signal.SIGKILL):
+        return "timeout", "", seconds
     if os.waitstatus_to_exitcode(raw) == 0:
-        return "survived", ""
-    return "killed", failed[0].split(" ", 1)[1] if failed else text.strip().splitlines()[-1][:120] if text.strip() else "?"
+        return "survived", "", seconds
+    return "killed", _first_failure(folder / "out"), seconds
+
+
+def _first_failure(out: Path) -> str:
+    text = out.read_text(errors="replace") if out.exists() else ""
+    failed = [line.split(" - ")[0] for line in text.splitlines() if line.startswith(("FAILED", "ERROR"))]
+    return failed[0].split(" ", 1)[1] if failed else "the import, or the start of the tests"
 
 
 def sampled(area: str, sample: int, seed: int) -> list[Mutant]:
@@ -245,7 +276,8 @@ def _campaign(said: argparse.Namespace) -> None:
     old = read(said.out)
     if said.what == "again":
         open_rows = [row for row in old if row.status in ("survived", "uncovered") and row.area == said.area]
-        pairs = [(Mutant(row.file, row.number, row.line, row.what, row.scope), row) for row in open_rows]
+        every = {(one.file, one.number): one for one in mutants(said.area)}
+        pairs = [(every[row.file, row.number], row) for row in open_rows]
     else:
         known = {(row.file, row.number) for row in old}
         fresh = [one for one in sampled(said.area, said.sample, said.seed) if (one.file, one.number) not in known]

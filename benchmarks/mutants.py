@@ -120,13 +120,17 @@ class _Places(ast.NodeVisitor):
 
     def visit_Return(self, node: ast.Return) -> None:
         if node.value is not None and not (isinstance(node.value, ast.Constant) and node.value.value is None):
-            self.add(node, f"return None for `{_short(node.value)}`", lambda: setattr(node, "value", ast.Constant(None)))
+            self.add(
+                node, f"return None for `{_short(node.value)}`", lambda: setattr(node, "value", ast.Constant(None))
+            )
         self.generic_visit(node)
 
     def visit_Compare(self, node: ast.Compare) -> None:
         for k, operator in enumerate(node.ops):
             other = COMPARED[type(operator)]
-            self.add(node, f"{type(operator).__name__} -> {other.__name__} in `{_short(node)}`", _put(node.ops, k, other()))
+            self.add(
+                node, f"{type(operator).__name__} -> {other.__name__} in `{_short(node)}`", _put(node.ops, k, other())
+            )
         self.generic_visit(node)
 
     def visit_BinOp(self, node: ast.BinOp) -> None:
@@ -182,9 +186,15 @@ class _Places(ast.NodeVisitor):
     def visit_Call(self, node: ast.Call) -> None:
         name = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
         if name in RENAMED and isinstance(node.func, ast.Attribute):
-            self.add(node, f"{name} -> {RENAMED[name]} in `{_short(node)}`", lambda: setattr(node.func, "attr", RENAMED[name]))
+            self.add(
+                node,
+                f"{name} -> {RENAMED[name]} in `{_short(node)}`",
+                lambda: setattr(node.func, "attr", RENAMED[name]),
+            )
         elif name in RENAMED and name not in ("first", "second", "std", "mean"):
-            self.add(node, f"{name} -> {RENAMED[name]} in `{_short(node)}`", lambda: setattr(node.func, "id", RENAMED[name]))
+            self.add(
+                node, f"{name} -> {RENAMED[name]} in `{_short(node)}`", lambda: setattr(node.func, "id", RENAMED[name])
+            )
         elif name in ("sqrt", "abs", "conj", "unique") and node.args:
             self.add(node, f"drop {name} in `{_short(node)}`", lambda: _become(node, node.args[0]))
         self.generic_visit(node)

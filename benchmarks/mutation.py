@@ -246,7 +246,9 @@ def score(rows: list[Row]) -> Iterator[str]:
     for area in AREAS:
         own = [row.status for row in rows if row.area == area]
         if own:
-            count = {status: own.count(status) for status in ("killed", "timeout", "survived", "uncovered", "equivalent")}
+            count = {
+                status: own.count(status) for status in ("killed", "timeout", "survived", "uncovered", "equivalent")
+            }
             killed, all_ = count["killed"] + count["timeout"], len(own) - count["equivalent"]
             yield f"{area}: {killed} of {all_} killed, {100 * killed / all_:.1f} %; {count}"
 
@@ -288,7 +290,10 @@ def _campaign(said: argparse.Namespace) -> None:
 
     def note(row: Row) -> None:
         done.append(row)
-        print(f"{len(done)}/{len(pairs)} {row.status} {row.file}:{row.line} {row.what} [{row.tests}, {row.seconds} s]", flush=True)
+        print(
+            f"{len(done)}/{len(pairs)} {row.status} {row.file}:{row.line} {row.what} [{row.tests}, {row.seconds} s]",
+            flush=True,
+        )
         write(said.out, old if said.what == "again" else old + done)
 
     run(pairs, Coverage(said.cover), note, said.jobs)

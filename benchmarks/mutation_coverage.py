@@ -25,7 +25,9 @@ class LineContexts:
     def __init__(self, folders: list[str]) -> None:
         self.users: dict[str, list[str]] = {}
         self.seconds: dict[str, float] = {}
-        self.coverage = coverage.Coverage(data_file=None, source=[str(ROOT / one) for one in folders], config_file=False)
+        self.coverage = coverage.Coverage(
+            data_file=None, source=[str(ROOT / one) for one in folders], config_file=False
+        )
         self.coverage.start()
         self.stack = ["import"]
 
@@ -63,7 +65,9 @@ class LineContexts:
             for file in data.measured_files()
         }
         seconds = {name: min(value, 1e9) for name, value in self.seconds.items()}
-        Path(os.environ["SLOWDRIFT_COVERAGE_OUT"]).write_text(json.dumps({"lines": lines, "users": self.users, "seconds": seconds}))
+        Path(os.environ["SLOWDRIFT_COVERAGE_OUT"]).write_text(
+            json.dumps({"lines": lines, "users": self.users, "seconds": seconds})
+        )
 
 
 def _name(definition: Any) -> str:

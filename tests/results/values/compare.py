@@ -43,7 +43,11 @@ def differences(expected: Any, actual: Any, place: str = "") -> list[str]:
     if isinstance(expected, list) and expected and isinstance(expected[0], dict):
         if len(expected) != len(actual):
             return [f"{place}: {len(actual)} items, not {len(expected)}"]
-        return [one for k, pair in enumerate(zip(expected, actual, strict=True)) for one in differences(*pair, f"{place}[{k}]")]
+        return [
+            one
+            for k, pair in enumerate(zip(expected, actual, strict=True))
+            for one in differences(*pair, f"{place}[{k}]")
+        ]
     return [] if _same(expected, actual) else [f"{place}: {_short(actual)}, expected {_short(expected)}"]
 
 

@@ -14,8 +14,6 @@ from tests.systems import Source
 __all__ = ["source"]
 
 
-
-
 class Lazy(Mapping[str, Any]):
     """Scenes by name, each solved when it is first wanted."""
 

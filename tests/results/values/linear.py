@@ -140,7 +140,9 @@ def mean_drift(raw: Raw) -> Any:
     for sea in raw.case.environment.random:
         beta = sea.direction - raw.heading - yaw
         per_square = np.stack([2e4 * omega * np.cos(beta), 5e4 * omega * np.sin(beta), 3e5 * omega * np.sin(2 * beta)])
-        force = 2.0 * np.trapezoid(jonswap(omega, sea.hs, 2 * np.pi / sea.peak_period, sea.gamma) * per_square, omega, axis=1)
+        force = 2.0 * np.trapezoid(
+            jonswap(omega, sea.hs, 2 * np.pi / sea.peak_period, sea.gamma) * per_square, omega, axis=1
+        )
         c, s = np.cos(yaw), np.sin(yaw)
         out[[0, 1, 5]] += [c * force[0] - s * force[1], s * force[0] + c * force[1], force[2]]
     return Close(out, 0.03)
@@ -170,7 +172,7 @@ class Bands:
         settings = raw.case.analyses.frequency_domain
         wave, low = settings.wave, settings.low
         parts = [(wave.from_, low.to), (low.to, wave.to)] if wave.from_ < low.to < wave.to else [(wave.from_, wave.to)]
-        edges = np.concatenate([np.linspace(a, b, max(round((b - a) / wave.step), 1) + 1)[: None] for a, b in parts])
+        edges = np.concatenate([np.linspace(a, b, max(round((b - a) / wave.step), 1) + 1)[:None] for a, b in parts])
         edges = np.unique(edges.round(12))
         self.border = low.to
         self.wave, self.wave_width = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)

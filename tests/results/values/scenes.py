@@ -37,9 +37,14 @@ def moored(seas: list[dict[str, Any]], **frequency: Any) -> dict[str, Any]:
     data["vessel"]["heading"] = "25 deg"
     data["line_types"]["chain"]["breaking_load"] = 5.2e6
     data["line_types"]["rope"] = copy.deepcopy(ROPE)
-    data["line_types"]["plain"] = {key: value for key, value in data["line_types"]["chain"].items() if key != "breaking_load"}
+    data["line_types"]["plain"] = {
+        key: value for key, value in data["line_types"]["chain"].items() if key != "breaking_load"
+    }
     first, second, third = (data["lines"][f"line-{k}"] for k in range(3))
-    first["segments"] = [{"type": "chain", "length": 260.0, "elements": 5}, {"type": "rope", "length": 160.0, "elements": 4}]
+    first["segments"] = [
+        {"type": "chain", "length": 260.0, "elements": 5},
+        {"type": "rope", "length": 160.0, "elements": 4},
+    ]
     first["multiplicity"] = 3
     second["end_a"], second["end_b"] = second["end_b"], second["end_a"]
     third["segments"][0]["type"] = "plain"
@@ -112,7 +117,9 @@ class Linear:
         return {one.name: one for one in make_channels(fresh)}
 
     def fresh(self) -> Linear:
-        return Linear(self.case, Solved(self.solved.model, self.solved.static, self.solved.frequency, self.solved.modes))
+        return Linear(
+            self.case, Solved(self.solved.model, self.solved.static, self.solved.frequency, self.solved.modes)
+        )
 
 
 @dataclass(frozen=True)
@@ -136,7 +143,9 @@ class Timed:
         assert spec is not None
         marched = [march_ensemble(model, static, spec, list(range(*seeds))) for seeds in chunks]
         record = _joined([record for record, _ in marched])
-        return cls(case, parts, record, marched[0][1], {line.name: line for line in static.lines}, Solved(model, static))
+        return cls(
+            case, parts, record, marched[0][1], {line.name: line for line in static.lines}, Solved(model, static)
+        )
 
     def result(self) -> Result:
         return merge(self.case, [Part.from_bytes(part.to_bytes()) for part in self.parts])

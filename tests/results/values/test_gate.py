@@ -74,7 +74,9 @@ def without_value(result: Result, lines: Iterable[str], keys: set[str], channels
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_no_key_of_an_example_is_without_a_value_test(name: str, known_keys: set[str], known_channels: set[str]) -> None:
+def test_no_key_of_an_example_is_without_a_value_test(
+    name: str, known_keys: set[str], known_channels: set[str]
+) -> None:
     case, result = example_result(name)
     assert without_value(result, case.lines, known_keys, known_channels) == set()
 
@@ -85,13 +87,17 @@ def test_every_registered_channel_has_a_value_test(known_channels: set[str]) -> 
 
 
 def test_every_documented_key_has_a_value_test(known_keys: set[str]) -> None:
-    assert {key for key in DOCUMENTED if "/" not in key and not re.fullmatch(r"\d+|[A-Za-z ]+ [a-z ].*", key)} - known_keys == set()
+    assert {
+        key for key in DOCUMENTED if "/" not in key and not re.fullmatch(r"\d+|[A-Za-z ]+ [a-z ].*", key)
+    } - known_keys == set()
 
 
 def test_an_invented_key_is_found(known_keys: set[str], known_channels: set[str]) -> None:
     case, result = example_result("hanging-riser-case1.yaml")
     line = {**result.summary["statics"]["lines"]["riser"], "sag": 1.0}
-    invented = Result({**result.summary, "statics": {**result.summary["statics"], "lines": {"riser": line}}}, result.channels)
+    invented = Result(
+        {**result.summary, "statics": {**result.summary["statics"], "lines": {"riser": line}}}, result.channels
+    )
     assert without_value(invented, case.lines, known_keys, known_channels) == {"statics.lines.NAME.sag"}
 
 

@@ -34,7 +34,12 @@ def test_a_refused_run_says_the_same_under_another_name(timed_scenes: dict[str, 
     found = timed_scenes[scene]
     said = {"failures": {"time_domain": "the step is too long."}}
     add_doubtful(said, merge_time([Part.from_bytes(part.to_bytes()) for part in found.parts]))
-    expected = {**summary(found), "converged": False, "doubt": "the step is too long.", "seeds": list(found.record.seeds)}
+    expected = {
+        **summary(found),
+        "converged": False,
+        "doubt": "the step is too long.",
+        "seeds": list(found.record.seeds),
+    }
     assert differences(expected, said["time_domain_doubtful"]) == []
     words = said["failures"]["time_domain"]
     assert words.startswith("the step is too long. What was computed")

@@ -63,7 +63,9 @@ def _both_maxima(patch: Patch) -> None:
 
 def _m2_of_first_order(patch: Patch) -> None:
     plain = solved.Solved.moments
-    patch.setattr(solved.Solved, "moments", lambda self, spectra, band, order=0: plain(self, spectra, band, min(order, 1)))
+    patch.setattr(
+        solved.Solved, "moments", lambda self, spectra, band, order=0: plain(self, spectra, band, min(order, 1))
+    )
 
 
 def _lowest_tension(patch: Patch) -> None:
@@ -78,12 +80,18 @@ def _lowest_tension(patch: Patch) -> None:
 
 def _largest_breaking_load(patch: Patch) -> None:
     plain = line_values.breaking_loads
-    patch.setattr(line_values, "breaking_loads", lambda *which: np.full_like(plain(*which), np.nan_to_num(plain(*which), nan=1.0).max()))
+    patch.setattr(
+        line_values,
+        "breaking_loads",
+        lambda *which: np.full_like(plain(*which), np.nan_to_num(plain(*which), nan=1.0).max()),
+    )
 
 
 def _utilisation_without_ends(patch: Patch) -> None:
     plain = line_values.utilisation
-    patch.setattr(product_summary, "utilisation", lambda case, line, elements, a, b: plain(case, line, elements, 0.0, 0.0))
+    patch.setattr(
+        product_summary, "utilisation", lambda case, line, elements, a, b: plain(case, line, elements, 0.0, 0.0)
+    )
 
 
 def _grounded_by_touch(patch: Patch) -> None:
@@ -106,7 +114,9 @@ def _border_left_out(patch: Patch) -> None:
 
 def _second_order_lost(patch: Patch) -> None:
     plain = solved.Solved.spectra
-    patch.setattr(solved.Solved, "spectra", lambda self, wave, low: plain(self, wave, None if low is None else 0.0 * low))
+    patch.setattr(
+        solved.Solved, "spectra", lambda self, wave, low: plain(self, wave, None if low is None else 0.0 * low)
+    )
 
 
 LINEAR: dict[str, tuple[Callable[[Patch], None], str, str]] = {
@@ -126,9 +136,7 @@ LINEAR: dict[str, tuple[Callable[[Patch], None], str, str]] = {
 
 
 @pytest.mark.parametrize("fault", LINEAR)
-def test_a_wrong_value_of_the_summary_is_noticed(
-    linear: dict[str, Linear], monkeypatch: Patch, fault: str
-) -> None:
+def test_a_wrong_value_of_the_summary_is_noticed(linear: dict[str, Linear], monkeypatch: Patch, fault: str) -> None:
     plant, scene, shows = LINEAR[fault]
     expected = summary(linear[scene].fresh())
     plant(monkeypatch)

@@ -72,7 +72,9 @@ class History:
             sigma = np.sqrt(variance.mean(axis=-1))
             spread = np.zeros_like(sigma)
             if count > 1:
-                spread = np.sqrt(np.sum((variance - variance.mean(axis=-1)[..., None]) ** 2, axis=-1) / (count - 1) / count)
+                spread = np.sqrt(
+                    np.sum((variance - variance.mean(axis=-1)[..., None]) ** 2, axis=-1) / (count - 1) / count
+                )
             out[band] = sigma
             out[f"{band}_error"] = np.where(sigma > 0, spread / np.where(sigma > 0, 2 * sigma, 1.0), 0.0)
         return out

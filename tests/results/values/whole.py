@@ -56,7 +56,8 @@ def provenance(raw: Raw) -> dict[str, Any]:
         band = case.analyses.frequency_domain.wave
         omega = np.linspace(band.from_, band.to, 200_001)
         inside = [
-            4 * np.sqrt(np.trapezoid(jonswap(omega, sea.hs, 2 * np.pi / sea.peak_period, sea.gamma), omega)) for sea in seas
+            4 * np.sqrt(np.trapezoid(jonswap(omega, sea.hs, 2 * np.pi / sea.peak_period, sea.gamma), omega))
+            for sea in seas
         ]
         out["seastates"] = [
             {"hs": Close(sea.hs, 1e-5), "hs_in_band": Close(value, 1e-5), "tp": sea.peak_period}

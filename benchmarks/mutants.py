@@ -77,7 +77,7 @@ class _Places(ast.NodeVisitor):
         self.scope.pop()
         self.bodies.pop()
 
-    visit_AsyncFunctionDef = visit_FunctionDef  # type: ignore[assignment]
+    visit_AsyncFunctionDef = visit_FunctionDef  # type: ignore[assignment]  # noqa: N815
 
     def visit_Import(self, node: ast.Import) -> None:
         return

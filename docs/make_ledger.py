@@ -76,7 +76,8 @@ def page(results: dict[str, dict[str, str]]) -> str:
     text = [HEAD.format(summary=f"{len(every)} claims: {said}; {known} with a known shortfall.")]
     for group in dict.fromkeys(row["group"] for row in every):
         text.append(
-            f"## {group}\n\n| id | claim | reference (licence) | accepted | result | status | test |\n|---|---|---|---|---|---|---|\n"
+            f"## {group}\n\n| id | claim | reference (licence) | accepted | result | status | test |\n"
+            "|---|---|---|---|---|---|---|\n"
         )
         text += [_line(row, results.get(row["test"], {})) for row in every if row["group"] == group]
         text.append("\n")

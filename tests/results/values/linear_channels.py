@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -148,7 +149,7 @@ def _harmonic_line(raw: Raw, k: int, name: str) -> dict[str, Any]:
 def _moments(raw: Raw, name: str, sizes: Array) -> dict[str, Any]:
     """Bending in and out of the plane, and curvature on the more flexible of the two sides."""
     EI = raw.along(name, "EI")
-    softer = np.array([EI[0], *(min(a, b) for a, b in zip(EI[:-1], EI[1:], strict=True)), EI[-1]])
+    softer = np.array([EI[0], *(min(a, b) for a, b in pairwise(EI)), EI[-1]])
     nodes = raw.nodes(name)
     return {
         "bending_moment_std": _one(sizes[0], [nodes], "N m"), "bending_moment_out_std": _one(sizes[1], [nodes], "N m"),

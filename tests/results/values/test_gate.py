@@ -20,18 +20,17 @@ from .linear import DOFS, Raw
 from .scenes import Linear, Timed
 
 #: keys and channels that the scenes do not have, and the test that holds their values
+VALUES = "tests/results/values"
+CATALOGUE = f"{VALUES}/test_other_values.py::test_what_the_catalogue_gave"
+REFUSED = f"{VALUES}/test_time_values.py::test_a_refused_run_says_the_same_under_another_name"
 ELSEWHERE = {
-    "frequency_domain.same_waves.vessel_std.BAND.DOF": "tests/results/values/test_other_values.py::test_sigma_in_the_same_waves",
-    "line_types.TYPE.catalogue.name": "tests/results/values/test_other_values.py::test_what_the_catalogue_gave",
-    "line_types.TYPE.catalogue.values.KEY.value": "tests/results/values/test_other_values.py::test_what_the_catalogue_gave",
-    "line_types.TYPE.catalogue.values.KEY.unit": "tests/results/values/test_other_values.py::test_what_the_catalogue_gave",
-    "line_types.TYPE.catalogue.values.KEY.formula": "tests/results/values/test_other_values.py::test_what_the_catalogue_gave",
-    "line_types.TYPE.catalogue.values.KEY.source": "tests/results/values/test_other_values.py::test_what_the_catalogue_gave",
-    "line_types.TYPE.catalogue.values.KEY.status": "tests/results/values/test_other_values.py::test_what_the_catalogue_gave",
-    "time_domain_doubtful.converged": "tests/results/values/test_time_values.py::test_a_refused_run_says_the_same_under_another_name",
-    "time_domain_doubtful.doubt": "tests/results/values/test_time_values.py::test_a_refused_run_says_the_same_under_another_name",
-    "time_domain_doubtful.seeds": "tests/results/values/test_time_values.py::test_a_refused_run_says_the_same_under_another_name",
-    "time_domain_doubtful.duration": "tests/results/values/test_time_values.py::test_a_refused_run_says_the_same_under_another_name",
+    "frequency_domain.same_waves.vessel_std.BAND.DOF": f"{VALUES}/test_other_values.py::test_sigma_in_the_same_waves",
+    "line_types.TYPE.catalogue.name": CATALOGUE,
+    **{
+        f"line_types.TYPE.catalogue.values.KEY.{key}": CATALOGUE
+        for key in ("value", "unit", "formula", "source", "status")
+    },
+    **{f"time_domain_doubtful.{key}": REFUSED for key in ("converged", "doubt", "seeds", "duration")},
 }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -255,7 +256,7 @@ def rainflow(history: Array) -> list[tuple[float, float]]:
             else:
                 found.append((before, 1.0))
                 del stack[-3:-1]
-    return found + [(abs(b - a), 0.5) for a, b in zip(stack[:-1], stack[1:], strict=True)]
+    return found + [(abs(b - a), 0.5) for a, b in pairwise(stack)]
 
 
 def rainflow_by_range(h: History, history: Array) -> dict[str, Any]:

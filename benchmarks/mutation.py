@@ -2,7 +2,7 @@
 
     python -m benchmarks.mutation cover --out cover.json         # once: which test executes which line (a whole quick loop)
     python -m benchmarks.mutation run --cover cover.json --out run.csv [--area store] [--sample 160] [--seed 14]
-    python -m benchmarks.mutation again --cover cover.json --out run.csv     # only what survived, after tests were added
+    python -m benchmarks.mutation again --area store --out run.csv --tests tests/store/test_new.py  # what survived, by new tests
     python -m benchmarks.mutation score --out run.csv
 
 A warm process that has imported the third-party libraries and everything below the area forks for every mutant. The
@@ -116,11 +116,13 @@ def _tests(contexts: list[str], users: dict[str, list[str]]) -> Iterator[str]:
             yield context
 
 
-def run(rows: list[tuple[Mutant, Row]], cover: Coverage, note: Callable[[Row], None], jobs: int) -> None:
-    """Try every mutant, `jobs` children at a time."""
+def run(
+    rows: list[tuple[Mutant, Row]], cover: Coverage, note: Callable[[Row], None], jobs: int, extra: list[str]
+) -> None:
+    """Try every mutant, `jobs` children at a time. extra : tests that are run for each, in the place of those of its line."""
     _prepare(rows[0][1].area)
     with ThreadPoolExecutor(jobs) as pool:
-        for row in pool.map(lambda pair: _try(*pair, cover), rows):
+        for row in pool.map(lambda pair: _try(*pair, cover, extra), rows):
             note(row)
 
 
@@ -146,8 +148,8 @@ def _dotted(area: str) -> list[str]:
     return [folder.replace("/", ".") + "." for folder in AREAS[area]]
 
 
-def _try(mutant: Mutant, row: Row, cover: Coverage) -> Row:
-    tests = cover.of(mutant, row.area)
+def _try(mutant: Mutant, row: Row, cover: Coverage, extra: list[str]) -> Row:
+    tests = [*([] if extra else cover.of(mutant, row.area)), *extra]
     row.tests = len(tests)
     if not tests:
         row.status = "uncovered"
@@ -262,7 +264,7 @@ def main() -> None:
     words.add_argument("--sample", type=int, default=160)
     words.add_argument("--seed", type=int, default=14)
     words.add_argument("--jobs", type=int, default=2)
-    words.add_argument("tests", nargs="*")
+    words.add_argument("--tests", nargs="*", default=[])
     said = words.parse_args()
     if said.what == "cover":
         cover(said.out.resolve(), said.tests)
@@ -296,7 +298,7 @@ def _campaign(said: argparse.Namespace) -> None:
         )
         write(said.out, old if said.what == "again" else old + done)
 
-    run(pairs, Coverage(said.cover), note, said.jobs)
+    run(pairs, Coverage(said.cover), note, said.jobs, said.tests)
 
 
 if __name__ == "__main__":

@@ -117,9 +117,9 @@ def test_runs_are_listed_newest_first_from_below_the_cursor(database: Database) 
     ids = [queue(database) for _ in range(5)]
     with database.read() as session:
         runs = RunRepository(session, SCOPE)
-        first = [run.id for run in runs.page(2, None)]
-        second = [run.id for run in runs.page(2, first[-1])]
-    assert first + second == [ids[4], ids[3], ids[2], ids[1]]
+        (newest, total), (older, _) = runs.page(2, None), runs.page(2, ids[3])
+    assert total == 5
+    assert [view.run.id for view in newest + older] == [ids[4], ids[3], ids[2], ids[1]]
 
 
 def test_accounts_are_listed_newest_first_and_missing_ones_are_said(database: Database) -> None:

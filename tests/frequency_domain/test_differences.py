@@ -12,8 +12,8 @@ from solver.case.analysis import LowBand, WaveBand
 from solver.forces import axial, bending
 from solver.frequency_domain.band import difference_strips, wave_strips
 from solver.model.body import VesselBody
-from tests.results.values.linear_channels import stiffness_of_joints
 from tests.results.values.linear import Raw
+from tests.results.values.linear_channels import stiffness_of_joints
 from tests.results.values.scenes import Linear, calm, shaken
 from tests.systems import Source
 

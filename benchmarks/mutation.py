@@ -2,7 +2,7 @@
 
     python -m benchmarks.mutation cover --out cover.json         # once: which test executes which line (a whole quick loop)
     python -m benchmarks.mutation run --cover cover.json --out run.csv [--area store] [--sample 160] [--seed 14]
-    python -m benchmarks.mutation again --area store --out run.csv --tests tests/store/test_new.py  # what survived, by new tests
+    python -m benchmarks.mutation again --area store --out run.csv --tests tests/store/test_new.py  # what survived
     python -m benchmarks.mutation score --out run.csv
 
 A warm process that has imported the third-party libraries and everything below the area forks for every mutant. The

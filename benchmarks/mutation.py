@@ -57,7 +57,7 @@ FOLDERS = {
     "store": ("tests/store", "tests/studies", "tests/access"),
     "api": ("tests/api", "tests/access", "tests/studies"),
 }
-COLUMNS = ("area", "file", "number", "line", "scope", "what", "tests", "status", "killer", "seconds")
+COLUMNS = ("area", "file", "number", "line", "scope", "what", "tests", "before", "status", "killer", "seconds")
 
 
 @dataclass
@@ -71,6 +71,7 @@ class Row:
     scope: str
     what: str
     tests: int = 0
+    before: str = ""  # status before tests were added
     status: str = ""
     killer: str = ""
     seconds: float = 0.0

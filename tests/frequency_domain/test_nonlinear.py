@@ -139,6 +139,7 @@ def _gap(data: dict[str, Any]) -> float:
     return float(np.abs(first - stepped)[1:-1].max() / np.abs(plain).max())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["motion current", "wave current"])
 def test_small_motion_in_a_current_nears_the_nonlinear_first_harmonic(kind: str) -> None:
     amplitudes = [0.8, 0.4, 0.2, 0.1]

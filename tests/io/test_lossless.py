@@ -110,6 +110,7 @@ def whole_cases(draw: st.DrawFn) -> dict[str, Any]:
     return data
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(whole_cases())
 def test_made_cases(data: dict[str, Any]) -> None:

@@ -93,6 +93,7 @@ def _numbered(case: Case) -> dict[str, object]:
     return data
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(cases())
 def test_what_both_can_say_survives_a_round_trip(data: dict[str, object]) -> None:
@@ -176,6 +177,7 @@ def test_radius_and_azimuth_need_no_statics() -> None:
     assert again.lines["line-1"].end_a.anchor.point == pytest.approx((x, y))
 
 
+@pytest.mark.slow
 def test_moordyn_itself_finds_the_same_tensions_at_rest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """MoorDyn-C, settled on a deck written here, against our statics with the default transition of the bed: 0.1 %."""
     moordyn = pytest.importorskip("moordyn")

@@ -48,6 +48,7 @@ def test_a_line_that_snaps_slack_and_folds(amplitude: float, h: float) -> None:
         marched(_riser(amplitude, 10.0, h))
 
 
+@pytest.mark.slow
 def test_a_line_of_next_to_no_mass_is_answered_and_the_answer_keeps() -> None:
     """Its buoyancy is that of the riser: nothing but the step holds it."""
     light = {"mass": 1e-6, "added_mass": {"normal": 0.0, "tangential": 0.0}}
@@ -62,6 +63,7 @@ def test_a_motion_far_beyond_the_line(amplitude: float, EI: float, said: str) ->
         marched(_riser(amplitude, 27.0, 0.05, EI=EI))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("stiffness", "transition", "h"), [(2e9, 0.01, 0.02), (2e7, 0.05, 0.01), (2e6, 0.05, 0.02)])
 def test_a_bed_too_stiff_for_the_step(stiffness: float, transition: float, h: float) -> None:
     """Marched on, tension would run to 1.5 MN instead of 0.5, be 11 % too low at its peak, or 9 % off."""
@@ -70,6 +72,7 @@ def test_a_bed_too_stiff_for_the_step(stiffness: float, transition: float, h: fl
         marched(_bed(stiffness, transition, h))
 
 
+@pytest.mark.slow
 def test_blows_of_the_bed_that_are_followed_are_said() -> None:
     """The case whose peak came out 11 % too low with 10 ms and without a word: a fifth of that step is answered, warned."""
     record, _ = marched(_bed(2e7, 0.05, 0.002))

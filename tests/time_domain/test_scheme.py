@@ -98,6 +98,7 @@ def test_a_drag_free_pendulum_loses_energy_as_the_scheme_is_known_to() -> None:
         assert (energy[0] - energy[-1]) / swing == pytest.approx(known, rel=0.05)
 
 
+@pytest.mark.slow
 def test_what_a_wide_swing_loses_vanishes_with_the_step() -> None:
     """At 25 degrees it also moves along itself, faster; what that loses falls with the step, and nothing is gained."""
     lost = []

@@ -52,7 +52,12 @@ def test_a_part_comes_back_from_its_bytes() -> None:
     back = Part.from_bytes(part.to_bytes())
     (channel,), (one,) = back.channels, part.channels
     assert back.summary == part.summary
-    assert (channel.name, channel.unit, channel.description, channel.band) == (one.name, one.unit, one.description, one.band)
+    assert (channel.name, channel.unit, channel.description, channel.band) == (
+        one.name,
+        one.unit,
+        one.description,
+        one.band,
+    )
     np.testing.assert_array_equal(channel.values, one.values)
     assert [(axis.name, axis.unit, list(axis.values)) for axis in channel.axes] == [
         (axis.name, axis.unit, list(axis.values)) for axis in one.axes

@@ -7,7 +7,6 @@ between calls (it knows nothing of a changed solver: empty the folder then). Plo
 from __future__ import annotations
 
 import argparse
-import os
 import platform
 import sys
 import textwrap
@@ -66,9 +65,8 @@ Slowdrift's is computed there, none is typed in.
 
 Slowdrift {version(found)}; FPSO: seeds {seeds[0]} to {seeds[-1]}, step {time["time_step"]:g} s,
 build-up {time["build_up"] / 60:.1f} min,
-kept {time["duration"] / 60:.1f} min each; machine: {platform.machine()}, {os.cpu_count()} cores shared with other work.
-The {len(seeds)} realisations took {time["wall_time"]:.0f} s,
-the frequency domain {found["frequency_domain"]["wall_time"]:.1f} s (paper, 2 GHz Pentium 4: 90 h and 3 min)."""
+kept {time["duration"] / 60:.1f} min each; machine: {platform.machine()}. Times are in [performance.md](performance.md)
+(paper, 2 GHz Pentium 4: 90 h for the time domain, 3 min for the frequency domain)."""
 
 
 def _riser(study: Study) -> str:

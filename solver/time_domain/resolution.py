@@ -108,7 +108,8 @@ class Finding:
         )
         advice = {
             "kink": f"; compare with {first}half the step",
-            "snatch": "; compare its peak with half the step",
+            "snatch": "; the largest tension after it can be wrong by tens of per cent: compare with half the step, or use a "
+            "wider seabed transition",
             "reach": "; compare with wave_kinematics: mean",
             "blow": "; peaks after such blows vary by several per cent from step to step: compare with half the step, or "
             "use a softer or damped seabed",

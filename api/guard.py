@@ -89,8 +89,13 @@ def _csrf(session: str, shown: str) -> Response | None:
 
 def session_token(cookies: str) -> str:
     """The session's token in a Cookie header; empty where there is none."""
+    return cookie_value(cookies, SECURE_COOKIE, COOKIE)
+
+
+def cookie_value(cookies: str, secure_name: str, name: str) -> str:
+    """Of a cookie that has one name over https and another over http; empty where there is none."""
     jar = cookie_parser(cookies)
-    return jar.get(SECURE_COOKIE) or jar.get(COOKIE) or ""
+    return jar.get(secure_name) or jar.get(name) or ""
 
 
 def _null_byte(scope: Scope) -> Response | None:

@@ -9,14 +9,14 @@ from __future__ import annotations
 import hmac
 import secrets
 import time
-from hashlib import sha256
 
-from starlette.requests import cookie_parser
+from store.tokens import digest
+
+from .guard import cookie_value
 
 KNOWN, SECURE_KNOWN = "slowdrift-known", "__Host-slowdrift-known"
 """The cookie's name over http and https."""
 DAYS = 365
-_PURPOSE = b"slowdrift known browser "
 
 
 def known_value(user_id: str, secret: bytes, now: float | None = None) -> str:
@@ -28,8 +28,7 @@ def known_value(user_id: str, secret: bytes, now: float | None = None) -> str:
 
 def known_browser(cookies: str, user_id: str, secret: bytes, now: float | None = None) -> str | None:
     """The browser's number, where the Cookie header shows that this account was signed in to with it; else None."""
-    jar = cookie_parser(cookies)
-    body, _, signature = (jar.get(SECURE_KNOWN) or jar.get(KNOWN) or "").rpartition(".")
+    body, _, signature = cookie_value(cookies, SECURE_KNOWN, KNOWN).rpartition(".")
     if not hmac.compare_digest(_signature(body, secret).encode(), signature.encode()):
         return None
     known_user, number, ends = body.split(".")
@@ -38,4 +37,4 @@ def known_browser(cookies: str, user_id: str, secret: bytes, now: float | None =
 
 
 def _signature(body: str, secret: bytes) -> str:
-    return hmac.new(secret, _PURPOSE + body.encode(), sha256).hexdigest()
+    return digest(f"slowdrift known browser {body}", secret)

@@ -14,6 +14,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 import anyio
 from sqlalchemy.orm import Session
@@ -40,6 +41,7 @@ TOLD_AT_ONCE = 10
 """Listeners that are told between two turns of the event loop, so that requests come in between."""
 log = logging.getLogger(__name__)
 
+K = TypeVar("K")
 Key = tuple[str, bool]
 """A run, and whether it is seen through a share link, where nobody is named."""
 
@@ -152,10 +154,7 @@ class Watcher:
         try:
             yield listener
         finally:
-            followed.listeners.discard(listener)
-            if not followed.listeners and self._runs.get(key) is followed:
-                del self._runs[key]
-            self._stop()
+            self._leave(self._runs, key, followed, listener)
 
     @contextmanager
     def project(self, scope: Scope) -> Iterator[Listener]:
@@ -172,16 +171,20 @@ class Watcher:
         try:
             yield listener
         finally:
-            followed.listeners.discard(listener)
-            if not followed.listeners and self._projects.get(key) is followed:
-                del self._projects[key]
-            self._stop()
+            self._leave(self._projects, key, followed, listener)
 
     def _start(self) -> None:
         if self._task is None or self._task.done():
             self._soon = asyncio.Event()
             self._task = asyncio.get_running_loop().create_task(self._watch())
         self._soon.set()
+
+    def _leave(self, table: dict[K, _Followed], key: K, followed: _Followed, listener: Listener) -> None:
+        """End the last listener's entry, and the looks with the last entry."""
+        followed.listeners.discard(listener)
+        if not followed.listeners and table.get(key) is followed:
+            del table[key]
+        self._stop()
 
     def _stop(self) -> None:
         if not (self._runs or self._projects) and self._task is not None:

@@ -8,12 +8,12 @@ from urllib.parse import urlencode
 
 from fastapi import APIRouter, Depends, Query, Request
 from fastapi.responses import RedirectResponse
-from starlette.requests import cookie_parser
 
 from store.errors import ConflictError, NotFoundError, TooManyError
 
 from ..access import needs
 from ..context import Context, ContextDep
+from ..guard import cookie_value
 from ..oidc_provider import OidcError, Provider
 from ..services import oidc as service
 from .auth import AttemptsDep, browser_of, give_session, is_secure
@@ -60,8 +60,7 @@ def callback(
 ) -> RedirectResponse:  # fmt: skip
     """Where the provider sends the browser back: begins a session, or goes to the sign-in page with the reason."""
     browser = browser_of(request)
-    jar = cookie_parser(browser.cookies)
-    cookie = jar.get(service.SECURE_BEGUN) or jar.get(service.BEGUN) or ""
+    cookie = cookie_value(browser.cookies, service.SECURE_BEGUN, service.BEGUN)
     given = service.Answer(state, code, iss, error)
     try:
         token, user, page = service.finish(context, provider, attempts, cookie, given, browser)

@@ -8,12 +8,12 @@ import logging
 import secrets
 import time
 from dataclasses import dataclass
-from hashlib import sha256
 
 from store.people import Identity, User
 from store.repositories.accounts import AccountRepository
 from store.repositories.identities import IdentityRepository
 from store.repositories.teams import TeamRepository
+from store.tokens import digest
 
 from ..attempts import Attempts
 from ..context import Context, Unit, acting
@@ -75,7 +75,7 @@ class Journey:
         return inner(base64.urlsafe_b64decode(self.body.split(".")[2]).decode())
 
     def _made(self, what: str) -> str:
-        return hmac.new(self.secret, f"slowdrift oidc {what} {self.body}".encode(), sha256).hexdigest()
+        return digest(f"slowdrift oidc {what} {self.body}", self.secret)
 
 
 def inner(page: str) -> str:

@@ -162,8 +162,7 @@ class Assembly:
         """r(s): all loads on the vessel (6,) [N, N m], zeros without one (S5)."""
         if self.body is None:
             return np.zeros(6)
-        at_ends = np.array([end_forces(force) for force in nodal]).reshape(-1, 6)
-        pulls = np.einsum("l,lji,lj->i", self.numbers, self.couplings(position), at_ends)
+        pulls = np.einsum("l,lji,lj->i", self.numbers, self.couplings(position), _at_ends(nodal))
         return self.body.load(position) + self.extra + pulls
 
     def residual(self, nodal: Sequence[Array], position: Array) -> tuple[float, str]:
@@ -183,7 +182,7 @@ class Assembly:
     def _largest_share(self, nodal: Sequence[Array]) -> float:
         """The largest force of a fairlead over the sum of all: as a share of the one, a load is a share of the sum."""
         _, on_vessel = self.fairleads
-        sizes = np.linalg.norm(np.array([end_forces(force) for force in nodal]).reshape(-1, 2, 3), axis=2) * on_vessel
+        sizes = np.linalg.norm(_at_ends(nodal).reshape(-1, 2, 3), axis=2) * on_vessel
         total = float(self.numbers @ sizes.sum(axis=1))
         return float(sizes.max(initial=0.0)) / total if total > 0.0 else 1.0
 
@@ -251,7 +250,7 @@ class Assembly:
         G, m = self.couplings(position), self.numbers
         Kc = np.array([one[3] for one in solved]).reshape(-1, 6, 6)
         fc = np.array([one[4] for one in solved]).reshape(-1, 6)
-        at_ends = np.array([end_forces(one[0]) for one in solved]).reshape(-1, 2, 3)
+        at_ends = _at_ends([one[0] for one in solved]).reshape(-1, 2, 3)
         arms, on_vessel = self.fairleads
         J = self.body.stiffness(position) + np.einsum("l,lij->ij", m, G.swapaxes(1, 2) @ Kc @ G)
         J = J + np.einsum("l,le,leij->ij", m, on_vessel, self.body.geometric(position, arms, at_ends))
@@ -293,6 +292,11 @@ class Assembly:
         for number, force, move in zip(self.numbers, nodal, step.moves, strict=True):
             total += number * float(np.vdot(force[1:-1], move))
         return total
+
+
+def _at_ends(nodal: Sequence[Array]) -> Array:
+    """The end forces of all lines (L, 6) [N]."""
+    return np.array([end_forces(force) for force in nodal]).reshape(-1, 6)
 
 
 def end_forces(nodal: Array) -> Array:

@@ -1,6 +1,6 @@
 """The database at 150 000 runs: `python benchmarks/many_runs.py [--runs 150000] [--explain]`.
 
-Makes a PostgreSQL database as it was before the indexes of migration 0007, fills it with runs of 300 studies that have
+Makes a PostgreSQL database as it was before the indexes of migration 0008, fills it with runs of 300 studies that have
 ended over a year (and a few that wait and are at work), then measures each query as the service puts it: before the
 migration, while it is applied, and after. Times are medians of 15, in milliseconds; `--explain` prints the plans.
 Needs the PostgreSQL server of the tests (tests/service/conftest.py).
@@ -33,7 +33,7 @@ from store.repositories import DataSetRepository, QueueRepository, RunRepository
 from store.scope import Scope  # noqa: E402
 from tests.service.conftest import create_database, drop_database  # noqa: E402
 
-BEFORE = "0006"
+BEFORE = "0007"
 TIMES = 15
 SCOPE = Scope()
 FILL = """
